@@ -16,7 +16,8 @@ int SurfaceMargin(const LabelVolume& volume);
 // and extracts the level at which as many voxels lie inside as before, so that smoothing keeps the volume and thin
 // bones. Uses marching tetrahedra and remeshing of server/anatomy rather than VTK, which would add 766 MB to the build
 // dependencies and whose windowed sinc filter keeps the volume no better.
-// FAILED_PRECONDITION if the mask has fewer than eight voxels, is larger than a part of a person, or encloses no volume.
+// FAILED_PRECONDITION if the mask has fewer than eight voxels, is larger than a part of a person, or encloses no
+// volume.
 absl::StatusOr<Mesh> SurfaceOf(const LabelVolume& volume, const Mask& mask, double edge_length);
 
 }  // namespace phrenic::imaging

@@ -114,9 +114,8 @@ struct Server::Parts {
                options.limits),
         table(models, clock, options.limits, store.get(), cluster.get()),
         page_tokens(cluster == nullptr ? PageTokens() : PageTokens("cluster")),
-        router(cluster == nullptr
-                   ? nullptr
-                   : std::make_unique<SessionRouter>(*cluster, PeerCredentials(options), page_tokens)),
+        router(cluster == nullptr ? nullptr
+                                  : std::make_unique<SessionRouter>(*cluster, PeerCredentials(options), page_tokens)),
         guard(*accounts, *audit, table, metrics, options.max_requests),
         pages(guard, metrics, table),
         scene_service(models, guard),

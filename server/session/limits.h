@@ -25,9 +25,9 @@ struct Limits {
   // Of each account, on a server with accounts.
   std::int64_t uploads_bytes_of_user = std::int64_t{256} << 20;
   int uploads_of_user = 64;
-  double pause_minutes = 5;  // a session without viewers or calls plays on; 0: forever
+  double pause_minutes = 5;   // a session without viewers or calls plays on; 0: forever
   double delete_minutes = 0;  // a session without viewers or calls is kept; 0: forever
-  double share = 0.75;  // fraction of viewers, exports, comparisons, checks and studies that one caller may have
+  double share = 0.75;        // fraction of viewers, exports, comparisons, checks and studies that one caller may have
 };
 
 }  // namespace phrenic::session

@@ -15,7 +15,7 @@ namespace {
 
 // Of the most verbose format (STL as text, two triangles of 250 bytes a vertex), so that no file that is within the
 // limits is refused before it is read.
-constexpr std::int64_t kBytesPerVertex = 500;
+constexpr std::int64_t kFileBytesPerVertex = 500;
 
 // The size of a closed surface.
 MeshSize Surface(std::int64_t vertices) { return {vertices, 3 * vertices, 2 * vertices, 0}; }
@@ -79,12 +79,12 @@ SizeSource MakeSizeSource(std::string data_dir, const std::vector<Uploads::Held>
       return Surface(anatomy::EstimateVertices(body.anatomy(), body.generated().resolution_mm()));
     }
     if (const auto found = sizes.find(body.file().path()); found != sizes.end()) {
-      return Surface(found->second / kBytesPerVertex);
+      return Surface(found->second / kFileBytesPerVertex);
     }
     std::error_code error;
     const absl::StatusOr<std::string> path = ResolveBelow(data_dir, body.file().path());
     const std::uintmax_t bytes = path.ok() ? std::filesystem::file_size(*path, error) : 0;
-    return error ? MeshSize{} : Surface(static_cast<std::int64_t>(bytes) / kBytesPerVertex);
+    return error ? MeshSize{} : Surface(static_cast<std::int64_t>(bytes) / kFileBytesPerVertex);
   };
 }
 

@@ -29,7 +29,8 @@ absl::StatusOr<State> MatchState(const Model& model, const v1::SavedScene& scene
                                  const VertexMatch& match);
 
 // Returns FAILED_PRECONDITION unless the state is finite and within the model's bounds, edges have plausible lengths,
-// fixed vertices are in their places, and no constraint is violated by more than a thousandth of the model's size, or twice `residual` [m].
+// fixed vertices are in their places, and no constraint is violated by more than a thousandth of the model's size, or
+// twice `residual` [m].
 absl::Status CheckState(const Model& model, const State& state, double residual);
 
 // Gives the pulls of a saved status the indices of the model's vertices. Removes those of vertices that are gone.

@@ -56,8 +56,8 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSessi
   const v1::Session& last = replayed->moment.session();
   Session::Fork start{SavedParameters(*compiled->model, last.parameters()), std::move(replayed->state),
                       last.largest_stable_step()};
-  Session::Origin origin{ControlBook(ControlOf(saved)), *std::move(journal), replayed->moment,
-                         epoch, std::move(compiled->surfaces)};
+  Session::Origin origin{ControlBook(ControlOf(saved)), *std::move(journal), replayed->moment, epoch,
+                         std::move(compiled->surfaces)};
   return std::make_shared<Session>(saved.id, compiled->model, std::move(start), clock_, limits_, std::move(origin));
 }
 

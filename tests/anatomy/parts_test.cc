@@ -66,7 +66,8 @@ TEST(Parts, FinerResolutionGivesMoreVertices) {
 TEST(Parts, VerticesAreEstimatedWithoutGenerating) {
   for (const double resolution_mm : {0.0, 7.0}) {
     for (const v1::Anatomy& part : AllParts()) {
-      const auto vertices = MeshOf(part, resolution_mm).vertices.cols(), estimate = EstimateVertices(part, resolution_mm);
+      const auto vertices = MeshOf(part, resolution_mm).vertices.cols(),
+                 estimate = EstimateVertices(part, resolution_mm);
       EXPECT_LE(vertices, 4 * estimate) << part.ShortDebugString() << resolution_mm;
       EXPECT_LE(estimate, 10 * vertices) << part.ShortDebugString() << resolution_mm;
     }

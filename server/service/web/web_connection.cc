@@ -30,8 +30,8 @@ std::string_view View(beast::string_view text) { return {text.data(), text.size(
 
 // Returns the longest body that can hold a message [bytes]: with its prefix, in base64 if `text`.
 std::size_t LimitOf(bool text, std::size_t max_message_bytes) {
-  constexpr std::size_t kPrefix = 5, kBlock = 3, kEncodedBlock = 4;
-  const std::size_t bytes = max_message_bytes + kPrefix;
+  constexpr std::size_t kFramePrefix = 5, kBlock = 3, kEncodedBlock = 4;
+  const std::size_t bytes = max_message_bytes + kFramePrefix;
   return text ? (bytes + kBlock - 1) / kBlock * kEncodedBlock : bytes;
 }
 
