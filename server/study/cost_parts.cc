@@ -21,6 +21,7 @@ std::string PartOf(const v1::Force& force) {
       return "friction";
     case v1::Force::kActionLine:
     case v1::Force::kFibres:
+    case v1::Force::kMuscle:
       return kMuscles;
     case v1::Force::kAttachment:
       return kAttachments;
@@ -152,6 +153,7 @@ bool MakeEmpty(v1::Force& force) {
     case v1::Force::kCrossLayer:
       force.mutable_cross_layer()->set_distance(1e-9);
       return true;
+    case v1::Force::kMuscle:
     case v1::Force::kContact:
     case v1::Force::kPressure:
     case v1::Force::kLungs:

@@ -138,6 +138,12 @@ class Bench {
       subjects_.membrane->forces.front()->AddForce(at, f_);
     };
     table.Register({"finite elements", pull, triangles, "triangle", ""});
+    const auto contract = [this] {
+      const EvalContext at = MakeEvalContext(*subjects_.muscle, subjects_.muscle->parameters, muscle_.state, scratch_);
+      subjects_.muscle->forces.front()->AddForce(at, muscle_force_);
+    };
+    table.Register({"muscle, single precision", contract,
+                    static_cast<double>(subjects_.muscle->bodies.front().mesh.triangles.cols()), "triangle", ""});
     table.Register({absl::StrCat("stiffness and ", Solver::kIterations, " iterations"), [this] { solver_.Solve(); },
                     vertices, "vertex", "", Solver::kIterations * IterationBytes()});
     table.Register({"an implicit step of 16.7 ms", [this] { implicit_.Step(); }, vertices, "vertex", ""});
@@ -155,7 +161,8 @@ class Bench {
   const SpringRows renumbered_single_;
   Solver solver_;
   Run euler_{subjects_.springs}, euler_single_{subjects_.single_springs}, implicit_{subjects_.springs},
-      membrane_{subjects_.membrane};
+      membrane_{subjects_.membrane}, muscle_{subjects_.muscle};
+  Points muscle_force_ = Points::Zero(3, subjects_.muscle->rest.cols());
   Run thorax_{subjects_.thorax}, unlinked_{subjects_.thorax};
   Run few_{subjects_.few_links}, many_{subjects_.many_links};
 #ifdef PHRENIC_BULLET

@@ -30,6 +30,14 @@ std::string Springs(const std::string& precision) {
                    precision + " }");
 }
 
+// A dome of muscle, of the size of a diaphragm's middle surface at 5 mm.
+std::string Muscle() {
+  return "name: 'bench' bodies { name: 'dome' role: ROLE_DEFORMABLE mass: 6 fixed_regions: 'rim' ellipsoid { radii { "
+         "x: "
+         "0.12 y: 0.09 z: 0.09 } divisions: 44 upper_half: true } regions { name: 'tendon' low { x: -1 y: -1 z: 0.07 } "
+         "high { x: 1 y: 1 z: 1 } } } forces { muscle { body: 'dome' from_region: 'rim' tendon_region: 'tendon' } }";
+}
+
 // A net of rigid links along columns and rows, several at each vertex, that hangs from its first row.
 std::string Net(int rows) {
   std::string links;
@@ -89,6 +97,7 @@ absl::StatusOr<Subjects> MakeSubjects() {
       {&subjects.single_springs, schema::ParseScene("springs", Springs("precision: PRECISION_SINGLE"))},
       {&subjects.membrane,
        schema::ParseScene("membrane", Diaphragm("membrane { bodies: 'diaphragm' youngs_modulus: 5000 }"))},
+      {&subjects.muscle, schema::ParseScene("muscle", Muscle())},
       {&subjects.few_links, schema::ParseScene("net", Net(73))},
       {&subjects.many_links, schema::ParseScene("net", Net(721))},
   };

@@ -26,7 +26,7 @@ struct StripShape {
 };
 constexpr StripShape kNarrow{.columns = 26, .rows = 2, .width = 0.001, .mass = 1e-4};
 
-std::string Strip(const std::string& muscle, const StripShape& shape = {}, const std::string& more = "") {
+std::string MuscleStrip(const std::string& muscle, const StripShape& shape = {}, const std::string& more = "") {
   return absl::StrFormat(
       "name: 'strip' bodies { name: 'strip' role: ROLE_DEFORMABLE mass: %g fixed_regions: 'from' grid { columns: %d "
       "rows: %d origin { x: 0.05 } u { x: %.17g } v { y: %.17g } } regions { name: 'from' low { x: 0.05 } high { x: "
@@ -39,7 +39,7 @@ std::string Strip(const std::string& muscle, const StripShape& shape = {}, const
 }
 
 // Half an ellipsoid with its tendon at the top.
-std::string Dome(const std::string& muscle, const std::string& more, int divisions = 8) {
+std::string MuscleDome(const std::string& muscle, const std::string& more, int divisions = 8) {
   return absl::StrFormat(
       "name: 'dome' bodies { name: 'dome' role: ROLE_DEFORMABLE mass: 0.5 ellipsoid { radii { x: 0.12 y: 0.09 z: 0.09 "
       "} "
@@ -49,12 +49,12 @@ std::string Dome(const std::string& muscle, const std::string& more, int divisio
       divisions, muscle, more);
 }
 
-const char kPressure[] = "forces { pressure { surface { bodies: 'dome' } pressure: 700 } } ";
-const char kFriction[] = "forces { friction { bodies: 'dome' rate: 8 } } ";
+const char kDomePressure[] = "forces { pressure { surface { bodies: 'dome' } pressure: 700 } } ";
+const char kDomeFriction[] = "forces { friction { bodies: 'dome' rate: 8 } } ";
 
-const Muscle& MuscleOf(const Model& model) { return dynamic_cast<const Muscle&>(*model.forces.front()); }
+const Muscle& TheMuscle(const Model& model) { return dynamic_cast<const Muscle&>(*model.forces.front()); }
 
-State AtPeak(const Model& model) {
+State AtPeakSignal(const Model& model) {
   State state = model.InitialState();
   state.phase = 0.25;  // of a sine
   return state;
@@ -67,7 +67,7 @@ void Shake(double size, State& state) {
   for (double& value : state.v.reshaped()) value = shift(random);
 }
 
-Points ForceAt(const Model& model, const State& state) {
+Points MuscleForceAt(const Model& model, const State& state) {
   Points f = Points::Zero(3, state.x.cols());
   model.forces.front()->AddForce(MakeEvalContext(model, model.parameters, state), f);
   return f;
@@ -93,11 +93,11 @@ void PullEnd(double tension, const StripShape& shape, State& state) {
 
 // Two vertices of the narrow strip far from its ends, 40 mm from each other at rest.
 constexpr int kNear = 3, kFar = 13;
-double StretchOf(const State& state) { return (state.x.col(kFar) - state.x.col(kNear)).norm() / 0.04; }
-double RateOf(const State& state) { return (state.v(0, kFar) - state.v(0, kNear)) / 0.04; }
+double StripStretch(const State& state) { return (state.x.col(kFar) - state.x.col(kNear)).norm() / 0.04; }
+double StripRate(const State& state) { return (state.v(0, kFar) - state.v(0, kNear)) / 0.04; }
 
 TEST(MuscleLaw, TensionIsTheDerivativeOfItsEnergyAndSlopeThatOfTension) {
-  const auto model = CompileText(Strip(""));
+  const auto model = CompileText(MuscleStrip(""));
   const MuscleLaw law = MakeMuscleLaw(model->scene.forces(0).muscle());
   for (double stretch = 0.3; stretch < 2.5; stretch += 0.0137) {
     const auto difference = [&](const auto& at, auto member) {
@@ -126,16 +126,16 @@ TEST(MuscleLaw, HillHasItsThreePoints) {
 // Both precisions, on every instruction set and for any number of threads; enough triangles for several threads.
 TEST(MuscleForce, HasTheSameBitsEverywhere) {
   for (const char* precision : {"", "precision: PRECISION_DOUBLE"}) {
-    const auto model = CompileText(Dome(precision, "", 40));
+    const auto model = CompileText(MuscleDome(precision, "", 40));
     State state = model->InitialState();
     state.phase = 0.4;
     Shake(1e-3, state);
-    const Points first = ForceAt(*model, state);
+    const Points first = MuscleForceAt(*model, state);
     ScalarState rates = state.scalars;
     const EvalContext at = MakeEvalContext(*model, model->parameters, state);
     model->forces.front()->AdvanceScalars(at, 0, 1e-3, rates);
     const auto same = [&] {
-      EXPECT_EQ(ForceAt(*model, state), first);
+      EXPECT_EQ(MuscleForceAt(*model, state), first);
       ScalarState again = state.scalars;
       model->forces.front()->AdvanceScalars(at, 0, 1e-3, again);
       EXPECT_EQ(again.q, rates.q);
@@ -149,27 +149,29 @@ TEST(MuscleForce, HasTheSameBitsEverywhere) {
 }
 
 TEST(MuscleForce, InSinglePrecisionIsNear) {
-  const auto single = CompileText(Dome("", "")), exact = CompileText(Dome("precision: PRECISION_DOUBLE", ""));
+  const auto single = CompileText(MuscleDome("", "")),
+             exact = CompileText(MuscleDome("precision: PRECISION_DOUBLE", ""));
   State state = exact->InitialState();
   state.phase = 0.4;
   Shake(1e-3, state);
-  const Points f = ForceAt(*exact, state);
-  EXPECT_LT((ForceAt(*single, state) - f).cwiseAbs().maxCoeff(), 2e-5 * f.cwiseAbs().maxCoeff());
+  const Points f = MuscleForceAt(*exact, state);
+  EXPECT_LT((MuscleForceAt(*single, state) - f).cwiseAbs().maxCoeff(), 2e-5 * f.cwiseAbs().maxCoeff());
 }
 
 // The stretch of muscle under a constant load is where force-length and passive tension together carry it.
 TEST(MuscleForce, ShortensUnderALoadToWhereForceLengthSays) {
-  const auto model = CompileText(Strip("resting_tension_across: 0 tendon_tension: 0 shortening_rate: 0", kNarrow));
+  const auto model =
+      CompileText(MuscleStrip("resting_tension_across: 0 tendon_tension: 0 shortening_rate: 0", kNarrow));
   ASSERT_NE(model, nullptr);
   const MuscleLaw law = MakeMuscleLaw(model->scene.forces(0).muscle());
   v1::Parameters parameters = model->parameters;
   parameters.set_integrator(v1::INTEGRATOR_STATIC);
   for (const double tension : {200.0, 500.0, 800.0}) {
-    State state = AtPeak(*model);
+    State state = AtPeakSignal(*model);
     PullEnd(tension, kNarrow, state);
     Workspace work = model->MakeWorkspace();
     ASSERT_TRUE(Step(*model, parameters, 1e-6, state, work).ok()) << tension;
-    EXPECT_NEAR(StretchOf(state), StretchUnder(law, 45, law.active, tension), 1e-4) << tension;
+    EXPECT_NEAR(StripStretch(state), StretchUnder(law, 45, law.active, tension), 1e-4) << tension;
   }
 }
 
@@ -178,8 +180,8 @@ TEST(MuscleForce, ShortensUnderALoadToWhereForceLengthSays) {
 TEST(MuscleForce, StopsWhereForceLengthVanishesWithoutFolding) {
   constexpr double kTension = 20;
   const StripShape shape;
-  const auto model = CompileText(Strip("resting_tension: 0 resting_tension_across: 0 tendon_tension: 0", shape,
-                                       "forces { friction { bodies: 'strip' rate: 20 } }"));
+  const auto model = CompileText(MuscleStrip("resting_tension: 0 resting_tension_across: 0 tendon_tension: 0", shape,
+                                             "forces { friction { bodies: 'strip' rate: 20 } }"));
   ASSERT_NE(model, nullptr);
   State state = model->InitialState();
   PullEnd(kTension, shape, state);
@@ -190,8 +192,8 @@ TEST(MuscleForce, StopsWhereForceLengthVanishesWithoutFolding) {
   const MuscleLaw law = MakeMuscleLaw(model->scene.forces(0).muscle());
   const double stop = StretchUnder(law, 0, law.active, kTension);
   EXPECT_LT(stop, 0.49);  // force-length vanishes at 0.4725
-  EXPECT_NEAR(MuscleOf(*model).Read(0, MakeEvalContext(*model, parameters, state)), stop, 0.03);
-  for (const MuscleTriangle& triangle : MuscleOf(*model).triangles()) {
+  EXPECT_NEAR(TheMuscle(*model).Read(0, MakeEvalContext(*model, parameters, state)), stop, 0.03);
+  for (const MuscleTriangle& triangle : TheMuscle(*model).triangles()) {
     const Eigen::Vector3d a = state.x.col(triangle.vertices[0]);
     const Eigen::Vector3d b = state.x.col(triangle.vertices[1]), c = state.x.col(triangle.vertices[2]);
     EXPECT_GT((b - a).cross(c - a).z(), 0.05 * 2 * triangle.area)
@@ -202,16 +204,16 @@ TEST(MuscleForce, StopsWhereForceLengthVanishesWithoutFolding) {
 // Isotonic release: the rate at which a strip shortens under a constant load, against Hill's law with viscosity.
 TEST(MuscleForce, ShortensUnderALoadAtTheRateThatHillSays) {
   constexpr double kTension = 500;
-  const auto model = CompileText(Strip("resting_tension_across: 0 tendon_tension: 0 viscosity: 2", kNarrow));
+  const auto model = CompileText(MuscleStrip("resting_tension_across: 0 tendon_tension: 0 viscosity: 2", kNarrow));
   ASSERT_NE(model, nullptr);
   const MuscleLaw law = MakeMuscleLaw(model->scene.forces(0).muscle());
   const HillLaw hill = MakeHillLaw(model->scene.forces(0).muscle());
-  State state = AtPeak(*model);
+  State state = AtPeakSignal(*model);
   PullEnd(kTension, kNarrow, state);
   Workspace work = model->MakeWorkspace();
   const double dt = model->parameters.time_step();
   while (state.time < 0.12) ASSERT_TRUE(Step(*model, model->parameters, dt, state, work).ok());
-  const double stretch = StretchOf(state), rate = RateOf(state);
+  const double stretch = StripStretch(state), rate = StripRate(state);
   EXPECT_LT(stretch, 0.97);
   EXPECT_GT(stretch, 0.7) << "still on its way";
   double slow = 0, fast = -6;  // bisection of the tension at this stretch for the rate
@@ -224,7 +226,7 @@ TEST(MuscleForce, ShortensUnderALoadAtTheRateThatHillSays) {
 }
 
 TEST(MuscleForce, MirroredSheetsHaveMirroredForces) {
-  const auto model = CompileText(Dome("precision: PRECISION_DOUBLE", ""));
+  const auto model = CompileText(MuscleDome("precision: PRECISION_DOUBLE", ""));
   const Points& rest = model->rest;
   const NearestSearch search(rest);
   State state = model->InitialState();
@@ -239,7 +241,7 @@ TEST(MuscleForce, MirroredSheetsHaveMirroredForces) {
     const Eigen::Vector3d p = rest.col(i);
     state.x.col(i) += 0.02 * Eigen::Vector3d(p.x() * std::cos(30 * p.z()), std::abs(p.x()) - p.z(), p.y());
   }
-  const Points f = ForceAt(*model, state);
+  const Points f = MuscleForceAt(*model, state);
   for (int i = 0; i < static_cast<int>(rest.cols()); ++i) {
     const Eigen::Vector3d mirrored(-f(0, i), f(1, i), f(2, i));
     EXPECT_LT((f.col(twin[i]) - mirrored).norm(), 1e-9 * f.cwiseAbs().maxCoeff());
@@ -247,9 +249,9 @@ TEST(MuscleForce, MirroredSheetsHaveMirroredForces) {
 }
 
 TEST(MuscleForce, PullsOnTheSideThatIsActive) {
-  const auto model = CompileText(Dome("precision: PRECISION_DOUBLE", ""));
+  const auto model = CompileText(MuscleDome("precision: PRECISION_DOUBLE", ""));
   State state = model->InitialState();
-  const Points passive = ForceAt(*model, state);
+  const Points passive = MuscleForceAt(*model, state);
   state.phase = 0.4;
   v1::Parameters parameters = model->parameters;
   parameters.set_right_activation(0);
@@ -270,7 +272,7 @@ TEST(MuscleForce, PullsOnTheSideThatIsActive) {
 }
 
 TEST(MuscleForce, ElasticityScalesStiffnessButNotTension) {
-  const auto model = CompileText(Dome("precision: PRECISION_DOUBLE", ""));
+  const auto model = CompileText(MuscleDome("precision: PRECISION_DOUBLE", ""));
   v1::Parameters parameters = model->parameters;
   State state = model->InitialState();
   const auto force = [&](double elasticity) {
@@ -286,13 +288,13 @@ TEST(MuscleForce, ElasticityScalesStiffnessButNotTension) {
 
 // Of a straight strip that shortens uniformly.
 TEST(MuscleRates, FollowTheMeanRateOfFibresAndTheirTimeConstant) {
-  const auto model = CompileText(Strip("rate_time: 0.015"));
+  const auto model = CompileText(MuscleStrip("rate_time: 0.015"));
   ASSERT_EQ(model->scalars.size(), static_cast<size_t>(FibreBundles::kCount));
   State state = model->InitialState();
   for (Eigen::Index i = 0; i < state.x.cols(); ++i) state.v(0, i) = -2 * (state.x(0, i) - 0.05);
   const EvalContext at = MakeEvalContext(*model, model->parameters, state);
   ScalarState rates = state.scalars;
-  for (int tick = 0; tick < 15; ++tick) MuscleOf(*model).AdvanceScalars(at, tick, 1e-3, rates);
+  for (int tick = 0; tick < 15; ++tick) TheMuscle(*model).AdvanceScalars(at, tick, 1e-3, rates);
   double sum = 0;
   int count = 0;
   for (const double rate : rates.q) {
@@ -300,19 +302,19 @@ TEST(MuscleRates, FollowTheMeanRateOfFibresAndTheirTimeConstant) {
   }
   EXPECT_EQ(count, 5) << "one for each vertex of the edge where fibres begin, all on the left";
   EXPECT_NEAR(sum / count, -2 * (1 - std::exp(-1.0)), 0.1);
-  for (int tick = 0; tick < 2000; ++tick) MuscleOf(*model).AdvanceScalars(at, tick, 1e-3, rates);
+  for (int tick = 0; tick < 2000; ++tick) TheMuscle(*model).AdvanceScalars(at, tick, 1e-3, rates);
   EXPECT_NEAR(rates.q.minCoeff(), -2, 1e-6);
 }
 
 TEST(MuscleRates, AreAbsentWhereForceDoesNotDependOnThem) {
-  const auto model = CompileText(Strip("shortening_rate: 0"));
+  const auto model = CompileText(MuscleStrip("shortening_rate: 0"));
   EXPECT_TRUE(model->scalars.empty());
   EXPECT_FALSE(model->forces.front()->advances_scalars());
 }
 
 // A run that goes on from a copy, with fresh memory, has the same future bit for bit; so has one on several threads.
 TEST(MuscleRates, GoOnFromACopyBitForBit) {
-  const auto model = CompileText(Dome("balanced_at_rest: true", std::string(kPressure) + kFriction));
+  const auto model = CompileText(MuscleDome("balanced_at_rest: true", std::string(kDomePressure) + kDomeFriction));
   for (const double tolerance : {0.0, 1e-6}) {
     v1::Parameters parameters = model->parameters;
     parameters.set_step_tolerance(tolerance);
@@ -336,8 +338,8 @@ TEST(MuscleRates, GoOnFromACopyBitForBit) {
 // Rest is an equilibrium: nothing pulls, and nothing drifts.
 TEST(MusclePrestress, HoldsTheLoadAtRest) {
   for (const char* precision : {"", " precision: PRECISION_DOUBLE"}) {
-    const auto model =
-        CompileText(Dome(std::string("balanced_at_rest: true") + precision, std::string(kPressure) + kFriction));
+    const auto model = CompileText(
+        MuscleDome(std::string("balanced_at_rest: true") + precision, std::string(kDomePressure) + kDomeFriction));
     ASSERT_NE(model, nullptr);
     State state = model->InitialState();
     Points f(3, state.x.cols());
@@ -354,8 +356,8 @@ TEST(MusclePrestress, HoldsTheLoadAtRest) {
 
 // Tensions, within their bounds, carry most of the pressure.
 TEST(MusclePrestress, CarriesThePressureByTensionsWithinTheirBounds) {
-  const auto model = CompileText(Dome("balanced_at_rest: true", kPressure));
-  const Points& left = MuscleOf(*model).rest_load();
+  const auto model = CompileText(MuscleDome("balanced_at_rest: true", kDomePressure));
+  const Points& left = TheMuscle(*model).rest_load();
   Points pressure = Points::Zero(3, left.cols());
   const State rest = model->InitialState();
   model->forces.back()->AddForce(MakeEvalContext(*model, model->parameters, rest), pressure);
@@ -364,7 +366,7 @@ TEST(MusclePrestress, CarriesThePressureByTensionsWithinTheirBounds) {
     if (model->inverse_mass[i] > 0) carried += left.col(i).norm(), all += pressure.col(i).norm();
   }
   EXPECT_LT(carried, 0.15 * all);
-  for (const MuscleTriangle& triangle : MuscleOf(*model).triangles()) {
+  for (const MuscleTriangle& triangle : TheMuscle(*model).triangles()) {
     EXPECT_GE(triangle.resting_along, 0.14 * 35);
     EXPECT_LE(triangle.resting_along, 120 * (1 + 1e-6));
     EXPECT_GE(triangle.resting_across, 0);
@@ -374,8 +376,8 @@ TEST(MusclePrestress, CarriesThePressureByTensionsWithinTheirBounds) {
 
 // A flat sheet cannot hold a pressure; the surface behind it can, from one side only.
 TEST(MusclePrestress, LeavesToContactsWhatPointsIntoThem) {
-  const auto model = CompileText(Strip(""));
-  std::vector<MuscleTriangle> triangles = MuscleOf(*model).triangles();
+  const auto model = CompileText(MuscleStrip(""));
+  std::vector<MuscleTriangle> triangles = TheMuscle(*model).triangles();
   const Eigen::Index n = model->rest.cols();
   const Eigen::VectorXd area = Eigen::VectorXd::Constant(n, 7e-5);
   for (const double pressure : {700.0, -700.0}) {
@@ -384,14 +386,14 @@ TEST(MusclePrestress, LeavesToContactsWhatPointsIntoThem) {
     normals.row(2).setOnes();
     const PrestressReport report = ChoosePrestress(
         {.first = 0, .load = load, .normals = normals, .area = area, .free = std::vector<bool>(n, true)}, 120,
-        triangles);
+        StopCheck(), triangles);
     EXPECT_NEAR(report.contact.minCoeff(), std::max(0.0, pressure), 1);
     EXPECT_NEAR(report.contact.maxCoeff(), std::max(0.0, pressure), 1);
   }
 }
 
 TEST(MuscleStep, IsStableUpToItsLimitWithViscosity) {
-  const auto model = CompileText(Strip("viscosity: 20 tendon_viscosity: 20 shortening_rate: 0"));
+  const auto model = CompileText(MuscleStrip("viscosity: 20 tendon_viscosity: 20 shortening_rate: 0"));
   ASSERT_NE(model, nullptr);
   v1::Parameters parameters = model->parameters;
   for (const auto integrator : {v1::INTEGRATOR_SEMI_IMPLICIT_EULER, v1::INTEGRATOR_VELOCITY_VERLET}) {
@@ -415,16 +417,16 @@ TEST(MuscleStep, IsStableUpToItsLimitWithViscosity) {
 }
 
 TEST(MuscleStep, ImplicitIntegratorsKnowItsViscosity) {
-  const auto model = CompileText(Strip("viscosity: 100 tendon_viscosity: 100 shortening_rate: 0"));
+  const auto model = CompileText(MuscleStrip("viscosity: 100 tendon_viscosity: 100 shortening_rate: 0"));
   for (const auto integrator : {v1::INTEGRATOR_LINEAR_IMPLICIT_EULER, v1::INTEGRATOR_BDF2, v1::INTEGRATOR_TR_BDF2,
                                 v1::INTEGRATOR_PROJECTIVE_DYNAMICS}) {
-    State state = AtPeak(*model);
+    State state = AtPeakSignal(*model);
     v1::Parameters parameters = model->parameters;
     parameters.set_integrator(integrator);
     Workspace work = model->MakeWorkspace();
     for (int i = 0; i < 30; ++i) ASSERT_TRUE(Step(*model, parameters, 0.01, state, work).ok()) << integrator;
     // Muscle of 882 N/m shortens against 100 N s/m at 8 per second, until force-length ends it.
-    const double stretch = MuscleOf(*model).Read(0, MakeEvalContext(*model, parameters, state));
+    const double stretch = TheMuscle(*model).Read(0, MakeEvalContext(*model, parameters, state));
     EXPECT_GT(stretch, 0.45) << integrator;
     EXPECT_LT(stretch, 0.75) << integrator;
   }
@@ -434,10 +436,11 @@ TEST(MuscleStep, ImplicitIntegratorsKnowItsViscosity) {
 TEST(MuscleMesh, RefinementConverges) {
   std::vector<double> tip;
   for (const int n : {5, 9, 17}) {
-    const auto model = CompileText(Strip("shortening_rate: 0", {.columns = 2 * n - 1, .rows = n},
-                                         "forces { point_load { body: 'strip' region: 'tendon' force { x: 6 } } }"));
+    const auto model =
+        CompileText(MuscleStrip("shortening_rate: 0", {.columns = 2 * n - 1, .rows = n},
+                                "forces { point_load { body: 'strip' region: 'tendon' force { x: 6 } } }"));
     ASSERT_NE(model, nullptr);
-    State state = AtPeak(*model);
+    State state = AtPeakSignal(*model);
     v1::Parameters parameters = model->parameters;
     parameters.set_diaphragm_activation(0.2);
     parameters.set_integrator(v1::INTEGRATOR_STATIC);
@@ -449,10 +452,17 @@ TEST(MuscleMesh, RefinementConverges) {
   EXPECT_LT(std::abs(tip[2] - tip[1]), 1e-3);
 }
 
+TEST(MuscleScene, AnswersToActivation) {
+  const auto model = CompileText(MuscleStrip(""));
+  for (const std::string& idle : model->report.idle_parameters()) {
+    EXPECT_FALSE(idle.ends_with("activation") || idle == "apply_muscles") << idle;
+  }
+}
+
 TEST(MuscleScene, NamesWhatIsWrong) {
   const auto message = [](const std::string& text) { return std::string(TryCompileText(text).status().message()); };
-  EXPECT_NE(message(Strip("passive_regions: 'cap'")).find("passive_regions[0]"), std::string::npos);
-  EXPECT_NE(message(Strip("tendon_stiffness: -1")).find("tendon_stiffness"), std::string::npos);
+  EXPECT_NE(message(MuscleStrip("passive_regions: 'cap'")).find("passive_regions[0]"), std::string::npos);
+  EXPECT_NE(message(MuscleStrip("tendon_stiffness: -1")).find("tendon_stiffness"), std::string::npos);
 }
 
 }  // namespace

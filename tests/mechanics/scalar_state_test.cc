@@ -26,6 +26,19 @@ TEST(ScalarState, BuilderNumbersCoordinatesAndReportsThem) {
   EXPECT_EQ(builder.model.report.elements(0).detail(), "starts at 0.25 rad");
 }
 
+TEST(ScalarState, InternalCoordinatesAreReportedTogether) {
+  ModelBuilder builder;
+  builder.AddScalar("angle", "rad", 0.25);
+  EXPECT_EQ(builder.AddInternalScalars("rate", "1/s", 3), 1);
+  ASSERT_EQ(builder.model.scalars.size(), 4u);
+  EXPECT_FALSE(builder.model.scalars[0].internal);
+  EXPECT_TRUE(builder.model.scalars[3].internal);
+  EXPECT_EQ(builder.model.scalars[3].name, "rate-2");
+  EXPECT_EQ(builder.model.scalars[3].initial, 0);
+  ASSERT_EQ(builder.model.report.elements_size(), 2);
+  EXPECT_EQ(builder.model.report.elements(1).count(), 3);
+}
+
 TEST(ScalarState, StartsAtItsInitialValuesAndWhereMotionsDriveIt) {
   const State state = CompileWithScalars(kTriangle)->InitialState();
   ASSERT_EQ(state.scalars.q.size(), 2);

@@ -73,6 +73,17 @@ TEST(Frame, ModelsWithoutScalarsSendNone) {
   EXPECT_EQ(MakeFrame(*model, Layout(*model), At(*model, 0.5))->scalars_size(), 0);
 }
 
+TEST(Frame, ElementsKeepTheirMemoryToThemselves) {
+  const auto model = CompileText(
+      "name: 'strip' bodies { name: 'strip' role: ROLE_DEFORMABLE mass: 1 grid { columns: 4 rows: 2 u { x: 1 } v { y: "
+      "1 } "
+      "} regions { name: 'from' low {} high { y: 1 } } regions { name: 'tendon' low { x: 3 } high { x: 3 y: 1 } } } "
+      "forces "
+      "{ muscle { body: 'strip' from_region: 'from' tendon_region: 'tendon' } }");
+  EXPECT_FALSE(model->scalars.empty());
+  EXPECT_EQ(MakeFrame(*model, Layout(*model), At(*model, 0))->scalars_size(), 0);
+}
+
 TEST(Frame, MeasuresAreReadAtItsState) {
   const auto model = CompileText(
       Triangle("measures { name: 'work' kinetic_energy { bodies: 'sheet' } } measures { name: 'height' highest { body: "

@@ -52,5 +52,18 @@ TEST(LiverAndDiaphragm, MoveTogether) {
   EXPECT_LT(std::abs(Descent(*model, end, 0)), 0.003);
 }
 
+TEST(Muscle, ShortensAndThickensWithTheBreathAndComesBackToRest) {
+  const auto model = CompileText(ShippedScene("muscle"));
+  const auto read = [&](const State& state, size_t output) {
+    return model->forces.front()->Read(output, MakeEvalContext(*model, model->parameters, state));
+  };
+  const State peak = After(*model, 2), rest = After(*model, 4);
+  EXPECT_NEAR(read(peak, 0), 0.84, 0.03) << "stretch of fibres";
+  EXPECT_NEAR(read(peak, 1), 1.17, 0.05) << "thickness";
+  EXPECT_GT(Descent(*model, peak, 0), 0.01);
+  EXPECT_NEAR(read(rest, 0), 1, 2e-3);
+  EXPECT_LT((rest.x - model->rest).cwiseAbs().maxCoeff(), 1e-3);
+}
+
 }  // namespace
 }  // namespace phrenic

@@ -6,16 +6,15 @@
 namespace phrenic {
 namespace {
 
-constexpr int kBalanceIterations = 600;
+constexpr int kPrestressIterations = 450;
 constexpr int kPowers = 30;               // products of the power iteration
-constexpr float kNormMargin = 1.1F;           // of its result
-constexpr float kRegularisation = 3e-3F;  // of the largest eigenvalue
-constexpr float kBalanced = 1e-5F;         // of the greatest tension: an iteration that changes less is the last
+constexpr float kPowerSafety = 1.1F;      // of its result
+constexpr float kTensionSettled = 2e-5F;  // of the greatest tension: an iteration that changes less is the last
 constexpr double kLeastAlong = 0.15, kLeastAcross = 0.1;  // of the tensions to begin with
 constexpr double kGreatestAcross = 0.7;                   // of the greatest tension along
 constexpr float kContactStep = 0.5F;
 
-using Four = Eigen::Vector4f;  // x, y, z, 0: one aligned load
+using Four = Eigen::Vector4f;  // x, y, z and any number: one load
 using Fours = std::vector<Four, Eigen::aligned_allocator<Four>>;
 
 // Along and across the fibres of a triangle.
@@ -24,22 +23,27 @@ struct Pair {
 };
 
 // One triangle's part of the problem: the force on corner i is -(along tension p_i f + across tension q_i c), scaled by
-// the root of the vertex' area.
-struct Row {
-  Four f, c;                   // area times the directions
+// the root of the vertex' area. One line of the cache.
+struct alignas(64) Row {
+  float f[3] = {}, c[3] = {};  // area times the directions
   float p[3] = {}, q[3] = {};  // 0 for vertices that do not move
   int vertices[3] = {};
+  float share = 0;  // of the area of all triangles
+
+  // The fourth number of these is any.
+  Four F() const { return Eigen::Map<const Four>(f); }
+  Four C() const { return Eigen::Map<const Four>(c); }
 };
 
 float Product(const Four& a, const Four& b) { return a[0] * b[0] + (a[1] * b[1] + a[2] * b[2]); }
 
 Four ToFour(const Eigen::Vector3d& v) { return Eigen::Vector4d(v[0], v[1], v[2], 0).cast<float>(); }
 
-class TensionSearch {
+class PrestressSearch {
  public:
-  TensionSearch(const RestingLoad& resting, double greatest, const std::vector<MuscleTriangle>& triangles);
+  PrestressSearch(const RestingLoad& resting, double greatest, const std::vector<MuscleTriangle>& triangles);
 
-  int Run();
+  int Run(const StopCheck& stop);
   const std::vector<Pair>& tensions() const { return last_; }
   float Pressure(size_t vertex) const { return contact_[vertex]; }
 
@@ -53,7 +57,7 @@ class TensionSearch {
   float MoveTensions(float momentum);
   void MoveContacts();
 
-  std::vector<Row, Eigen::aligned_allocator<Row>> rows_;
+  std::vector<Row> rows_;
   Fours load_, normal_;        // scaled; normals times the root of the area
   std::vector<float> root_;    // of the area around each vertex [m]
   std::vector<int> contacts_;  // vertices that rest on a surface
@@ -61,10 +65,12 @@ class TensionSearch {
   std::vector<Pair> last_, ahead_;  // FISTA's iterate, and the point from which it goes on
   std::vector<float> contact_;      // [Pa]
   Fours residual_;
-  float largest_ = 0, scale_ = 0;
+  float step_ = 0;   // along the gradient
+  float scale_ = 0;  // the greatest tension [N/m]
 };
 
-TensionSearch::TensionSearch(const RestingLoad& resting, double greatest, const std::vector<MuscleTriangle>& triangles) {
+PrestressSearch::PrestressSearch(const RestingLoad& resting, double greatest,
+                                 const std::vector<MuscleTriangle>& triangles) {
   const Eigen::Index n = resting.area.size();
   contact_.assign(n, 0);
   scale_ = static_cast<float>(greatest);
@@ -78,7 +84,10 @@ TensionSearch::TensionSearch(const RestingLoad& resting, double greatest, const 
   }
   for (const MuscleTriangle& triangle : triangles) {
     Row& row = rows_.emplace_back();
-    row.f = ToFour(triangle.area * triangle.f), row.c = ToFour(triangle.area * triangle.c);
+    for (int k = 0; k < 3; ++k) {
+      row.f[k] = static_cast<float>(triangle.area * triangle.f[k]);
+      row.c[k] = static_cast<float>(triangle.area * triangle.c[k]);
+    }
     for (int i = 0; i < 3; ++i) {
       row.vertices[i] = triangle.vertices[i] - resting.first;
       if (!resting.free[row.vertices[i]]) continue;
@@ -91,28 +100,31 @@ TensionSearch::TensionSearch(const RestingLoad& resting, double greatest, const 
     greatest_.push_back({static_cast<float>(std::max(along, greatest)),
                          static_cast<float>(std::max(across, kGreatestAcross * greatest))});
   }
+  double area = 0;
+  for (const MuscleTriangle& triangle : triangles) area += triangle.area;
+  for (size_t t = 0; t < rows_.size(); ++t) rows_[t].share = static_cast<float>(triangles[t].area / area);
   last_ = ahead_ = start_;
   residual_.resize(n);
 }
 
-void TensionSearch::AddForces(const std::vector<Pair>& tensions, Fours& residual) const {
+void PrestressSearch::AddForces(const std::vector<Pair>& tensions, Fours& residual) const {
   for (size_t t = 0; t < rows_.size(); ++t) {
     const Row& row = rows_[t];
-    const Four f = tensions[t].along * row.f, c = tensions[t].across * row.c;
+    const Four f = tensions[t].along * row.F(), c = tensions[t].across * row.C();
     for (int i = 0; i < 3; ++i) residual[row.vertices[i]] -= row.p[i] * f + row.q[i] * c;
   }
 }
 
-Pair TensionSearch::Columns(const Row& row, const Fours& residual) {
+Pair PrestressSearch::Columns(const Row& row, const Fours& residual) {
   Four f = Four::Zero(), c = f;
   for (int i = 0; i < 3; ++i) {
     const Four& r = residual[row.vertices[i]];
     f += row.p[i] * r, c += row.q[i] * r;
   }
-  return {-Product(row.f, f), -Product(row.c, c)};
+  return {-Product(row.F(), f), -Product(row.C(), c)};
 }
 
-float TensionSearch::LargestEigenvalue() const {
+float PrestressSearch::LargestEigenvalue() const {
   std::vector<Pair> vector(rows_.size(), Pair{1, 1});
   Fours product(residual_.size());
   float largest = 0;
@@ -133,59 +145,64 @@ float TensionSearch::LargestEigenvalue() const {
     }
     largest = static_cast<float>(sum);
   }
-  return kNormMargin * largest;
+  return kPowerSafety * largest;
 }
 
-void TensionSearch::FindResidual() {
+void PrestressSearch::FindResidual() {
   residual_ = load_;
   for (const int i : contacts_) residual_[i] -= contact_[i] * normal_[i];
   AddForces(ahead_, residual_);
 }
 
 // Returns the largest change [N/m].
-float TensionSearch::MoveTensions(float momentum) {
+float PrestressSearch::MoveTensions(float momentum) {
   float change = 0;
-  const auto move = [&](float gradient, float start, float least, float greatest, float& last, float& ahead) {
-    const float moved = std::clamp(ahead - (gradient / largest_ + kRegularisation * (ahead - start)), least, greatest);
+  const auto move = [&](float gradient, float least, float greatest, float& last, float& ahead) {
+    const float moved = std::clamp(ahead - gradient * step_, least, greatest);
     change = std::max(change, std::abs(moved - last));
     ahead = moved + momentum * (moved - last);
     last = moved;
   };
   for (size_t t = 0; t < rows_.size(); ++t) {
-    const Pair gradient = Columns(rows_[t], residual_);
-    move(gradient.along, start_[t].along, least_[t].along, greatest_[t].along, last_[t].along, ahead_[t].along);
-    move(gradient.across, start_[t].across, least_[t].across, greatest_[t].across, last_[t].across, ahead_[t].across);
+    const Pair gradient = Columns(rows_[t], residual_), start = start_[t], least = least_[t], greatest = greatest_[t];
+    Pair &last = last_[t], &ahead = ahead_[t];
+    const float share = rows_[t].share;
+    move(gradient.along + share * (ahead.along - start.along), least.along, greatest.along, last.along, ahead.along);
+    move(gradient.across + share * (ahead.across - start.across), least.across, greatest.across, last.across,
+         ahead.across);
   }
   return change;
 }
 
-void TensionSearch::MoveContacts() {
+void PrestressSearch::MoveContacts() {
   for (const int i : contacts_) {
     const float along = Product(residual_[i], normal_[i]) / (root_[i] * root_[i]);
     contact_[i] = std::max(0.0F, contact_[i] + kContactStep * along);
   }
 }
 
-int TensionSearch::Run() {
-  largest_ = LargestEigenvalue();
-  if (!(largest_ > 0)) return 0;
+int PrestressSearch::Run(const StopCheck& stop) {
+  const float largest = LargestEigenvalue();
+  if (!(largest > 0)) return 0;
+  step_ = 1 / largest;
   float weight = 1;
-  for (int iteration = 1; iteration <= kBalanceIterations; ++iteration) {
+  for (int iteration = 1; iteration <= kPrestressIterations; ++iteration) {
     FindResidual();
     const float next = (1 + std::sqrt(1 + 4 * weight * weight)) / 2;
     const float change = MoveTensions((weight - 1) / next);
     weight = next;
     MoveContacts();
-    if (change <= kBalanced * scale_) return iteration;
+    if (change <= kTensionSettled * scale_ || stop.Stopped()) return iteration;
   }
-  return kBalanceIterations;
+  return kPrestressIterations;
 }
 
 }  // namespace
 
-PrestressReport ChoosePrestress(const RestingLoad& resting, double greatest, std::vector<MuscleTriangle>& triangles) {
-  TensionSearch search(resting, greatest, triangles);
-  PrestressReport report{.iterations = search.Run(), .along = 0, .across = 0, .contact = {}};
+PrestressReport ChoosePrestress(const RestingLoad& resting, double greatest, const StopCheck& stop,
+                                std::vector<MuscleTriangle>& triangles) {
+  PrestressSearch search(resting, greatest, triangles);
+  PrestressReport report{.iterations = search.Run(stop), .along = 0, .across = 0, .contact = {}};
   double area = 0;
   for (size_t t = 0; t < triangles.size(); ++t) {
     MuscleTriangle& triangle = triangles[t];

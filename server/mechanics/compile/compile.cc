@@ -77,6 +77,7 @@ absl::Status AddElements(ModelBuilder& builder) {
     builder.model.force_kinds.push_back(KindOf(scene.forces(i)));
   }
   if (absl::Status s = BalanceForces(builder); !s.ok()) return s;
+  if (builder.stop.Stopped()) return builder.stop.status();
   if (absl::Status s = SpreadMassByStiffness(builder.model); !s.ok()) return s;
   for (int i = 0; i < scene.constraints_size(); ++i) {
     auto constraint = MakeConstraint(scene.constraints(i), absl::StrCat("constraints[", i, "]"), builder);

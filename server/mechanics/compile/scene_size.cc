@@ -109,6 +109,8 @@ std::int64_t ElementsOf(const v1::Force& scene, const NamedSizes& sizes) {
       return SaturatingProduct(3, sizes.Of(scene.solid().bodies()).size.tetrahedra);  // of some 700 bytes each
     case v1::Force::kFibres:
       return SaturatingProduct(4, sizes.Of(scene.fibres().bodies()).size.triangles);
+    case v1::Force::kMuscle:
+      return SaturatingProduct(4, sizes.Of(scene.muscle().body()).size.triangles);
     case v1::Force::kBending:
       return sizes.Of(scene.bending().bodies()).size.edges;
     case v1::Force::kCrossLayer:

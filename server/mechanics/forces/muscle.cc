@@ -4,7 +4,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "server/mechanics/breathing/muscle_prestress.h"
 #include "server/mechanics/forces/muscle_layout.h"
 #include "server/mechanics/forces/packed_points.h"
 #include "server/mesh/harmonic.h"
@@ -247,36 +246,37 @@ double Muscle::Energy(const EvalContext& at) const {
 absl::Status Muscle::BalanceAtRest(const ConstPoints& load, const ConstPoints& normals, ModelBuilder& builder) {
   const Model& model = builder.model;
   const Eigen::Index n = vertices_.end - vertices_.first;
-  const auto own = [&](const auto& of) { return of.middleCols(vertices_.first, n); };
   const BodyModel& body = model.BodyOf(static_cast<int>(vertices_.first));
   RestingLoad resting{.first = static_cast<int>(vertices_.first),
-                      .load = own(load),
-                      .normals = own(normals),
+                      .load = load.middleCols(vertices_.first, n),
+                      .normals = normals.middleCols(vertices_.first, n),
                       .area = VertexAreas(body.mesh.vertices, body.mesh.triangles),
                       .free = {}};
   for (Eigen::Index i = vertices_.first; i < vertices_.end; ++i) resting.free.push_back(model.inverse_mass[i] > 0);
-  const PrestressReport report = ChoosePrestress(resting, greatest_resting_tension_, triangles_);
+  const PrestressReport report = ChoosePrestress(resting, greatest_resting_tension_, builder.stop, triangles_);
   LayOut();
-  const State rest = model.InitialState();
-  Points sum = load;
-  v1::Parameters passive = model.parameters;
-  passive.set_apply_muscles(false);
-  AddForce(MakeEvalContext(model, passive, rest), sum);
-  rest_load_ = -own(sum);
-  double left = 0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (resting.free[i]) {
-      rest_load_.col(i) += resting.area[i] * report.contact[i] * resting.normals.col(i);
-    } else {
-      rest_load_.col(i).setZero();
-    }
-    left += rest_load_.col(i).norm();
-  }
+  rest_load_ = LoadThatIsLeft(model, resting, report);
   builder.ReportElement(
       "prestress", name(), static_cast<std::int64_t>(triangles_.size()), "triangles",
       absl::StrFormat("mean of muscle %.3g N/m along, %.3g N/m across; %.3g Pa left to a constant load; %d iterations",
-                      report.along, report.across, left / resting.area.sum(), report.iterations));
+                      report.along, report.across, rest_load_.colwise().norm().sum() / resting.area.sum(),
+                      report.iterations));
   return absl::OkStatus();
+}
+
+// Returns what tensions and contacts leave of the load on the vertices that move, with its sign reversed.
+Points Muscle::LoadThatIsLeft(const Model& model, const RestingLoad& resting, const PrestressReport& report) const {
+  const State rest = model.InitialState();
+  v1::Parameters passive = model.parameters;
+  passive.set_apply_muscles(false);
+  Points own = Points::Zero(3, model.rest.cols());
+  AddForce(MakeEvalContext(model, passive, rest), own);
+  Points left = -(own.middleCols(vertices_.first, resting.load.cols()) + resting.load);
+  for (Eigen::Index i = 0; i < left.cols(); ++i) {
+    left.col(i) += resting.area[i] * report.contact[i] * resting.normals.col(i);
+    if (!resting.free[i]) left.col(i).setZero();
+  }
+  return left;
 }
 
 std::span<const Force::Output> Muscle::outputs() const {

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "server/mechanics/breathing/fibre_bundles.h"
+#include "server/mechanics/breathing/muscle_prestress.h"
 #include "server/mechanics/breathing/muscle_triangle.h"
 #include "server/mechanics/forces/muscle_kernel.h"
 #include "server/mechanics/model_builder.h"
@@ -72,6 +73,7 @@ class Muscle final : public Force {
   void AddForceIn(const MuscleLayout<Number>& layout, const EvalContext& at, MutablePoints f) const;
   template <typename Number>
   Tensions MeanRatesIn(const MuscleLayout<Number>& layout, const EvalContext& at) const;
+  Points LoadThatIsLeft(const Model& model, const RestingLoad& resting, const PrestressReport& report) const;
   // Makes layout_ of triangles_.
   void LayOut();
 
