@@ -45,6 +45,12 @@ std::string PartOf(const v1::Force& force) {
       return "lungs";
     case v1::Force::kTargetSpring:
       return "target springs";
+    case v1::Force::kWallContact:
+      return "wall contact";
+    case v1::Force::kChestWall:
+      return "chest wall";
+    case v1::Force::kThoraxPressures:
+      return "thorax pressures";
     case v1::Force::kPointLoad:
       return "point loads";
     case v1::Force::KIND_NOT_SET:
@@ -61,6 +67,7 @@ std::string PartOf(const v1::Motion& motion) {
     case v1::Motion::kOscillation:
       return "oscillation";
     case v1::Motion::kSkin:
+    case v1::Motion::kInsertion:  // forces need it
     case v1::Motion::KIND_NOT_SET:
       break;
   }
@@ -154,6 +161,9 @@ bool MakeEmpty(v1::Force& force) {
       force.mutable_cross_layer()->set_distance(1e-9);
       return true;
     case v1::Force::kMuscle:
+    case v1::Force::kWallContact:
+    case v1::Force::kChestWall:
+    case v1::Force::kThoraxPressures:
     case v1::Force::kContact:
     case v1::Force::kPressure:
     case v1::Force::kLungs:

@@ -111,6 +111,12 @@ std::int64_t ElementsOf(const v1::Force& scene, const NamedSizes& sizes) {
       return SaturatingProduct(4, sizes.Of(scene.fibres().bodies()).size.triangles);
     case v1::Force::kMuscle:
       return SaturatingProduct(4, sizes.Of(scene.muscle().body()).size.triangles);
+    case v1::Force::kWallContact:
+      return sizes.Of(scene.wall_contact().bodies()).size.vertices;
+    case v1::Force::kChestWall:
+      return 2;
+    case v1::Force::kThoraxPressures:
+      return SaturatingProduct(3, sizes.Of(scene.thorax_pressures().body()).size.triangles);
     case v1::Force::kBending:
       return sizes.Of(scene.bending().bodies()).size.edges;
     case v1::Force::kCrossLayer:
@@ -156,6 +162,9 @@ std::int64_t ElementsOf(const v1::Motion& scene, const NamedSizes& sizes) {
     case v1::Motion::kSkin:
       return SaturatingSum(SaturatingProduct(4, sizes.Of(scene.skin().bodies()).size.vertices),
                            sizes.Of(scene.skin().drivers()).size.triangles);
+    case v1::Motion::kInsertion:
+      return SaturatingSum(sizes.Of(scene.insertion().body()).size.vertices,
+                           SaturatingProduct(9, sizes.Of(scene.insertion().wall()).size.vertices));
     case v1::Motion::KIND_NOT_SET:
       break;
   }
