@@ -64,10 +64,14 @@ class Force {
   virtual bool balances_at_rest() const { return false; }
   // Chooses a prestress so that the forces on the vertices that move sum to zero at rest. Called once while the scene
   // is compiled, when all its forces are made. `load` is the sum of the other forces at rest [N], `normals` those of
-  // all contacts (AddContactNormals), 3 x n each.
-  virtual absl::Status BalanceAtRest(const ConstPoints& /*load*/, const ConstPoints& /*normals*/, ModelBuilder&) {
+  // all contacts (AddContactNormals), 3 x n each. Adds to `pushes` the force [N] with which a surface is to push each
+  // vertex against its normal.
+  virtual absl::Status BalanceAtRest(const ConstPoints& /*load*/, const ConstPoints& /*normals*/, ModelBuilder&,
+                                     Eigen::VectorXd& /*pushes*/) {
     return absl::OkStatus();
   }
+  // Tells a contact how hard it pushes the vertices at rest that AddContactNormals named [N], one number per vertex.
+  virtual void RestOnSurface(const Eigen::VectorXd& /*pushes*/) {}
 
   // Advances the force's own State::scalars by a step of `dt` [s], or one part of an adaptive step, that ends at `end`.
   // `tick` counts such steps. A function of these arguments only: a run that is restored goes on bit for bit.

@@ -3,33 +3,45 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace phrenic {
 namespace {
 
-constexpr double kFullTurn = 2 * std::numbers::pi;
-constexpr int kAzimuths = 96, kHeights = 80;  // of the table
-constexpr double kLeastRadius = 1e-6;           // below it a point has no azimuth [m]
-constexpr int kLevels = 60;                     // of the wall between a loop and its top
+constexpr int kTurns = 96, kHeights = 48;   // of the table
+constexpr double kLeastRadius = 1e-6;       // below it a point has no turn [m]
+constexpr int kLevels = 60;                 // of the wall between a loop and its top
+
+// A measure of the azimuth, in [0, 4), and its derivatives by x and y.
+struct Turn {
+  double value, by_x, by_y;
+};
+
+Turn TurnOf(double x, double front) {
+  const double size = std::max(std::abs(x) + std::abs(front), kLeastRadius), ratio = x / size;
+  const double value = front < 0 ? 2 - ratio : (x < 0 ? 4 + ratio : ratio);
+  return {value < 4 ? value : 0, front / (size * size), x / (size * size)};
+}
+
+double AzimuthOf(double turn) {
+  const double ratio = turn < 1 ? turn : (turn < 3 ? 2 - turn : turn - 4);
+  const double front = (turn < 1 || turn > 3 ? 1 : -1) * (1 - std::abs(ratio));
+  const double azimuth = std::atan2(ratio, front);
+  return azimuth < 0 ? azimuth + 2 * std::numbers::pi : azimuth;
+}
 
 // The four entries around a point of the table, and where it lies between them.
 struct Cell {
-  int a, b, c, d;  // below left, below right, above left, above right
-  double u, v;     // fractions to the right and upwards
-  bool inside;     // not beyond the table's lower or upper border
-
-  double Value(const std::vector<double>& of) const {
-    return (1 - v) * ((1 - u) * of[a] + u * of[b]) + v * ((1 - u) * of[c] + u * of[d]);
-  }
-  double ByU(const std::vector<double>& of) const { return (1 - v) * (of[b] - of[a]) + v * (of[d] - of[c]); }
-  double ByV(const std::vector<double>& of) const { return (1 - u) * (of[c] - of[a]) + u * (of[d] - of[b]); }
+  int low_left, low_right, high_left, high_right;
+  double u, v;  // fractions to the right and upwards
+  bool inside;  // not beyond the table's lower or upper border
 };
 
-Cell CellAt(double azimuth, double height) {
-  const double column = azimuth * kAzimuths / kFullTurn, row = std::clamp(height * (kHeights - 1), 0.0, kHeights - 1.0);
-  const int left = std::min(static_cast<int>(column), kAzimuths - 1), below = std::min(static_cast<int>(row), kHeights - 2);
-  const int right = (left + 1) % kAzimuths, low = below * kAzimuths, high = low + kAzimuths;
+Cell CellAt(double turn, double height) {
+  const double column = turn * (kTurns / 4), row = std::clamp(height * (kHeights - 1), 0.0, kHeights - 1.0);
+  const int left = std::min(static_cast<int>(column), kTurns - 1), below = std::min(static_cast<int>(row), kHeights - 2);
+  const int right = left + 1 < kTurns ? left + 1 : 0, low = below * kTurns, high = low + kTurns;
   return {low + left, low + right, high + left, high + right, column - left, row - below, height > 0 && height < 1};
 }
 
@@ -53,11 +65,11 @@ absl::StatusOr<InnerWall> InnerWall::Make(const Points& rest, const std::vector<
 
 void InnerWall::Tabulate() {
   const CageFit fit;
-  radius_.resize(kAzimuths * kHeights);
+  radius_.resize(kTurns * kHeights);
   for (auto& coefficient : change_) coefficient.resize(radius_.size());
-  for (int entry = 0; entry < kAzimuths * kHeights; ++entry) {
-    const double azimuth = kFullTurn * (entry % kAzimuths) / kAzimuths;
-    const double z = bottom_ + height_ * (entry / kAzimuths) / (kHeights - 1);
+  for (int entry = 0; entry < kTurns * kHeights; ++entry) {
+    const double azimuth = AzimuthOf(4.0 * (entry % kTurns) / kTurns);
+    const double z = bottom_ + height_ * (entry / kTurns) / (kHeights - 1);
     const GridCoordinates there = grid_.Locate(rest_, azimuth, z, grid_.Guess(rest_, azimuth, z));
     radius_[entry] = grid_.Polar(grid_.At(rest_, there)).radius;
     CageQuadratic change;
@@ -70,32 +82,47 @@ void InnerWall::Tabulate() {
 }
 
 void InnerWall::Evaluate(const CagePosition& k, WallTable& table) const {
-  const size_t entries = radius_.size();
-  table.radius.resize(entries);
-  table.by_pump.resize(entries);
-  table.by_bucket.resize(entries);
+  table.entries.resize(radius_.size());
+  table.least.assign(kHeights, std::numeric_limits<double>::infinity());
   const auto& [p, b, pp, bb, pb] = change_;
-  for (size_t i = 0; i < entries; ++i) {
-    table.by_pump[i] = p[i] + 2 * pp[i] * k.pump + pb[i] * k.bucket;
-    table.by_bucket[i] = b[i] + 2 * bb[i] * k.bucket + pb[i] * k.pump;
-    // A quadratic: its change is the mean of its slopes at both ends.
-    table.radius[i] =
-        radius_[i] + k.pump * (p[i] + table.by_pump[i]) / 2 + k.bucket * (b[i] + table.by_bucket[i]) / 2;
+  for (int row = 0; row < kHeights; ++row) {
+    for (int i = row * kTurns; i < (row + 1) * kTurns; ++i) {
+      const double by_pump = p[i] + 2 * pp[i] * k.pump + pb[i] * k.bucket;
+      const double by_bucket = b[i] + 2 * bb[i] * k.bucket + pb[i] * k.pump;
+      // A quadratic: its change is the mean of its slopes at both ends.
+      const double radius = radius_[i] + k.pump * (p[i] + by_pump) / 2 + k.bucket * (b[i] + by_bucket) / 2;
+      table.entries[i] = {radius, by_pump, by_bucket};
+      table.least[row] = std::min(table.least[row], radius);
+    }
   }
 }
 
+bool InnerWall::IsFarInside(const WallTable& table, const Eigen::Vector3d& point, double margin) const {
+  const double row = std::clamp((point.z() - bottom_) / height_ * (kHeights - 1), 0.0, kHeights - 1.0);
+  const int below = std::min(static_cast<int>(row), kHeights - 2);
+  const double bound = std::min(table.least[below], table.least[below + 1]) - margin;
+  const double front = grid_.axis_y() - point.y();
+  return bound > 0 && point.x() * point.x() + front * front < bound * bound;
+}
+
 WallGap InnerWall::Gap(const WallTable& table, const Eigen::Vector3d& point) const {
-  const PolarPoint polar = grid_.Polar(point);
-  const Cell cell = CellAt(polar.azimuth, (polar.z - bottom_) / height_);
-  const double r = std::max(polar.radius, kLeastRadius);
-  const Eigen::Vector3d outward(std::sin(polar.azimuth), -std::cos(polar.azimuth), 0);
-  const Eigen::Vector3d around(std::cos(polar.azimuth), std::sin(polar.azimuth), 0);
-  const double by_azimuth = cell.ByU(table.radius) * kAzimuths / kFullTurn;
-  const double by_z = cell.inside ? cell.ByV(table.radius) * (kHeights - 1) / height_ : 0;
-  return {.gap = polar.radius - cell.Value(table.radius),
-          .gradient = outward - by_azimuth / r * around - by_z * Eigen::Vector3d::UnitZ(),
-          .by_pump = -cell.Value(table.by_pump),
-          .by_bucket = -cell.Value(table.by_bucket)};
+  const double x = point.x(), front = grid_.axis_y() - point.y();
+  const Turn turn = TurnOf(x, front);
+  const Cell cell = CellAt(turn.value, (point.z() - bottom_) / height_);
+  const WallTable::Entry &a = table.entries[cell.low_left], &b = table.entries[cell.low_right],
+                         &c = table.entries[cell.high_left], &d = table.entries[cell.high_right];
+  const double u = cell.u, v = cell.v;
+  const auto mean = [&](double low_left, double low_right, double high_left, double high_right) {
+    return (1 - v) * ((1 - u) * low_left + u * low_right) + v * ((1 - u) * high_left + u * high_right);
+  };
+  const double by_turn = ((1 - v) * (b.radius - a.radius) + v * (d.radius - c.radius)) * (kTurns / 4);
+  const double by_row = (1 - u) * (c.radius - a.radius) + u * (d.radius - b.radius);
+  const double by_z = cell.inside ? by_row * (kHeights - 1) / height_ : 0;
+  const double radius = std::max(std::sqrt(x * x + front * front), kLeastRadius);
+  return {.gap = radius - mean(a.radius, b.radius, c.radius, d.radius),
+          .gradient = {x / radius - by_turn * turn.by_x, -front / radius - by_turn * turn.by_y, -by_z},
+          .by_pump = -mean(a.by_pump, b.by_pump, c.by_pump, d.by_pump),
+          .by_bucket = -mean(a.by_bucket, b.by_bucket, c.by_bucket, d.by_bucket)};
 }
 
 InnerWall::Follower InnerWall::Follow(const Eigen::Vector3d& point) const {

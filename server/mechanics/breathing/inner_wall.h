@@ -1,12 +1,15 @@
-// The inner surface of a free rib cage, along which a diaphragm slides: the radius R(azimuth, z; k) about a vertical
-// axis, on a regular table of azimuths and heights, quadratic in the two coordinates of the cage.
+// The inner surface of a free rib cage, along which a diaphragm slides: the radius R(turn, z; k) about a vertical axis,
+// on a regular table of turns and heights, quadratic in the two coordinates of the cage. The turn is an algebraic
+// measure of the azimuth: with X = x and Y from the axis to the front, X/(|X| + |Y|) in the front right quarter, and so
+// on around, so that no step needs a trigonometric function.
 //
 // The wall is a polar grid that is skinned to the cage's bones. It is placed at nine positions of the cage; at each, the
-// radius is read where the table has its azimuths and heights, and a quadratic is fitted (cage_quadratic.h). Between the
+// radius is read where the table has its turns and heights, and a quadratic is fitted (cage_quadratic.h). Between the
 // entries of the table R is bilinear.
 #ifndef PHRENIC_SERVER_MECHANICS_BREATHING_INNER_WALL_H_
 #define PHRENIC_SERVER_MECHANICS_BREATHING_INNER_WALL_H_
 
+#include <array>
 #include <vector>
 
 #include "server/mechanics/breathing/cage_quadratic.h"
@@ -16,7 +19,11 @@ namespace phrenic {
 
 // The wall for one position of the cage: the table's entries, which bilinear interpolation reads.
 struct WallTable {
-  std::vector<double> radius, by_pump, by_bucket;  // [m], one per entry
+  struct Entry {
+    double radius, by_pump, by_bucket;  // [m]
+  };
+  std::vector<Entry> entries;
+  std::vector<double> least;  // radius of each row [m]
 };
 
 // The gap of a point, g = r - R, positive outside, and its derivatives.
@@ -37,6 +44,8 @@ class InnerWall {
   void Evaluate(const CagePosition& k, WallTable& table) const;
   // Returns the gap of a point. Points below and above the table have the gap of its border.
   WallGap Gap(const WallTable& table, const Eigen::Vector3d& point) const;
+  // True if a point is closer to the axis than `margin` [m] inside of all that surrounds it: its gap is below -margin.
+  bool IsFarInside(const WallTable& table, const Eigen::Vector3d& point, double margin) const;
 
   // A point that moves with the wall: a quadratic for x, y and z.
   struct Follower {
@@ -61,7 +70,7 @@ class InnerWall {
   std::vector<Points> moved_;  // [m]
   double bottom_ = 0, height_ = 0;  // of the table [m]
   std::vector<double> radius_;      // at rest [m], one per entry
-  std::vector<double> change_[5];   // coefficients of the quadratics, one per entry
+  std::array<std::vector<double>, 5> change_;  // coefficients of the quadratics, one per entry
 };
 
 }  // namespace phrenic

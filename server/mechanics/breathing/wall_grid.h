@@ -28,6 +28,7 @@ class WallGrid {
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
+  double axis_y() const { return axis_y_; }  // [m]
   // Rows from below that each azimuth meets once: only in those do Locate and Polar agree.
   int star_rows() const { return star_rows_; }
   PolarPoint Polar(const Eigen::Vector3d& point) const;

@@ -57,7 +57,10 @@ absl::Status BalanceForces(ModelBuilder& builder) {
       other->AddContactNormals(at, normals);
     }
     for (const auto& motion : model.motions) motion->TransferForces(at, load);
-    if (absl::Status balanced = force->BalanceAtRest(load, normals, builder); !balanced.ok()) return balanced;
+    Eigen::VectorXd pushes = Eigen::VectorXd::Zero(model.rest.cols());
+    if (absl::Status balanced = force->BalanceAtRest(load, normals, builder, pushes); !balanced.ok()) return balanced;
+    if (pushes.isZero()) continue;
+    for (const auto& other : builder.model.forces) other->RestOnSurface(pushes);
   }
   return absl::OkStatus();
 }

@@ -39,7 +39,7 @@ absl::StatusOr<std::unique_ptr<Force>> ChestWall::Make(const v1::ChestWall& scen
   return force;
 }
 
-absl::Status ChestWall::BalanceAtRest(const ConstPoints& load, const ConstPoints&, ModelBuilder&) {
+absl::Status ChestWall::BalanceAtRest(const ConstPoints& load, const ConstPoints&, ModelBuilder&, Eigen::VectorXd&) {
   for (Handle& handle : handles_) {
     handle.rest_load = -load(handle.coordinate.axis, handle.coordinate.vertex) * handle.coordinate.scale;
   }

@@ -28,7 +28,8 @@ class ChestWall final : public Force {
   void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
   double Energy(const EvalContext& at) const override;
   bool balances_at_rest() const override { return true; }
-  absl::Status BalanceAtRest(const ConstPoints& load, const ConstPoints& normals, ModelBuilder& builder) override;
+  absl::Status BalanceAtRest(const ConstPoints& load, const ConstPoints& normals, ModelBuilder& builder,
+                             Eigen::VectorXd& pushes) override;
   // k of the pump handle and the bucket handle [-].
   std::span<const Output> outputs() const override;
   double Read(size_t output, const EvalContext& at) const override;

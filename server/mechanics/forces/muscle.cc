@@ -243,7 +243,8 @@ double Muscle::Energy(const EvalContext& at) const {
   return energy;
 }
 
-absl::Status Muscle::BalanceAtRest(const ConstPoints& load, const ConstPoints& normals, ModelBuilder& builder) {
+absl::Status Muscle::BalanceAtRest(const ConstPoints& load, const ConstPoints& normals, ModelBuilder& builder,
+                                   Eigen::VectorXd& pushes) {
   const Model& model = builder.model;
   const Eigen::Index n = vertices_.end - vertices_.first;
   const BodyModel& body = model.BodyOf(static_cast<int>(vertices_.first));
@@ -256,6 +257,7 @@ absl::Status Muscle::BalanceAtRest(const ConstPoints& load, const ConstPoints& n
   const PrestressReport report = ChoosePrestress(resting, greatest_resting_tension_, builder.stop, triangles_);
   LayOut();
   rest_load_ = LoadThatIsLeft(model, resting, report);
+  pushes.segment(vertices_.first, n) += resting.area.cwiseProduct(report.contact);
   builder.ReportElement(
       "prestress", name(), static_cast<std::int64_t>(triangles_.size()), "triangles",
       absl::StrFormat("mean of muscle %.3g N/m along, %.3g N/m across; %.3g Pa left to a constant load; %d iterations",

@@ -46,7 +46,8 @@ class Muscle final : public Force {
   bool conservative() const override { return true; }
 
   bool balances_at_rest() const override { return balances_; }
-  absl::Status BalanceAtRest(const ConstPoints& load, const ConstPoints& normals, ModelBuilder& builder) override;
+  absl::Status BalanceAtRest(const ConstPoints& load, const ConstPoints& normals, ModelBuilder& builder,
+                             Eigen::VectorXd& pushes) override;
 
   void AdvanceScalars(const EvalContext& end, std::int64_t tick, double dt, ScalarState& scalars) const override;
   bool advances_scalars() const override { return hill_.shortening_rate > 0; }

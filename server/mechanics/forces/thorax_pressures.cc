@@ -40,46 +40,105 @@ absl::StatusOr<std::unique_ptr<Force>> ThoraxPressures::Make(const v1::ThoraxPre
   force->shift_damping_ = lungs.mediastinal_damping_rate() * lungs.mediastinal_inertia();
   force->AddSheet(builder.model.bodies[body->front()], builder.model);
   builder.ReportElement(
-      "force", force->name(), static_cast<std::int64_t>(force->triangles_.size()), "triangles",
+      "force", force->name(), builder.model.bodies[body->front()].mesh.triangles.cols(), "triangles",
       absl::StrFormat("lungs %g Pa s/m^3, abdomen %g m^3/Pa", lungs.resistance(), scene.abdomen().compliance()));
   return force;
 }
 
 void ThoraxPressures::AddSheet(const BodyModel& body, const Model& model) {
+  const Triangles& triangles = body.mesh.triangles;
+  const Points& rest = body.mesh.vertices;
+  std::array<std::vector<Eigen::Index>, 2> of_side;
   double total = 0;
-  for (Eigen::Index t = 0; t < body.mesh.triangles.cols(); ++t) {
-    const Eigen::Vector3i corners = body.mesh.triangles.col(t).array() + body.first_vertex;
-    const Eigen::Vector3d a = model.rest.col(corners[0]), b = model.rest.col(corners[1]), c = model.rest.col(corners[2]);
-    const Eigen::Vector3d mean = (a + b + c) / 3;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    const Eigen::Vector3d a = rest.col(triangles(0, t)), b = rest.col(triangles(1, t)), c = rest.col(triangles(2, t));
     const double area = (b - a).cross(c - a).norm() / 2;
-    triangles_.push_back({corners, mean.x() < 0 ? kRight : kLeft});
-    centre_ += area * mean;
+    of_side[(a + b + c).x() < 0 ? kRight : kLeft].push_back(t);
+    centre_ += area * (a + b + c) / 3;
     total += area;
   }
   centre_ /= total;
-  for (const int vertex : wall_->border) border_sides_.push_back(model.rest(0, vertex) < 0 ? kRight : kLeft);
+  sheet_.first_vertex = body.first_vertex;
+  std::vector<std::array<std::vector<std::int32_t>, 2>> around(static_cast<size_t>(rest.cols()));
+  std::int32_t place = 0;
+  for (const size_t side : {kRight, kLeft}) {
+    Triangles chosen(3, static_cast<Eigen::Index>(of_side[side].size()));
+    for (Eigen::Index i = 0; i < chosen.cols(); ++i) {
+      const Eigen::Vector3i corners = triangles.col(of_side[side][i]);
+      chosen.col(i) = corners.array() + body.first_vertex;
+      for (const int corner : corners) around[corner][side].push_back(4 * (place + static_cast<std::int32_t>(i)));
+    }
+    sheet_.packets[side] = PackTriangles(chosen);
+    place += kPacketTriangles * static_cast<std::int32_t>(sheet_.packets[side].size());
+  }
+  AddVertices(around);
   Slopes slopes;
-  rest_cones_ = Cones(model.rest, slopes);
+  rest_cones_ = Cones(model.rest, slopes, nullptr);
 }
 
-std::array<double, 2> ThoraxPressures::Cones(const ConstPoints& x, Slopes& slopes) const {
-  std::array<double, 2> volume = {};
-  for (Points& of : slopes.of) of.setZero(3, x.cols());
-  for (const auto& [corners, side] : triangles_) {
-    const Eigen::Vector3d a = x.col(corners[0]) - wall_->apex, b = x.col(corners[1]) - wall_->apex,
-                          c = x.col(corners[2]) - wall_->apex;
-    const Eigen::Vector3d third = (b - a).cross(c - a) / 6;
-    volume[side] += a.dot(third);
-    for (const int i : corners) slopes.of[side].col(i) += third;
+void ThoraxPressures::AddVertices(const std::vector<std::array<std::vector<std::int32_t>, 2>>& around) {
+  for (size_t i = 0; i < around.size(); ++i) {
+    sheet_.first.push_back(static_cast<std::int32_t>(sheet_.around.size()));
+    for (const auto& places : around[i]) sheet_.around.insert(sheet_.around.end(), places.begin(), places.end());
+    const auto& [right, left] = around[i];
+    sides_.push_back(right.empty() ? kLeft : kRight);
+    if (!right.empty() && !left.empty()) midline_.push_back({static_cast<int>(i), left});
+  }
+  sheet_.first.push_back(static_cast<std::int32_t>(sheet_.around.size()));
+}
+
+LinearField ThoraxPressures::Weight() const {
+  const Eigen::Vector3d slope = ToEigen(scene_.abdomen().weight());
+  return {{slope.x(), slope.y(), slope.z()}, slope.dot(centre_)};
+}
+
+std::array<double, 2> ThoraxPressures::Cones(const ConstPoints& x, Slopes& slopes, double* f) const {
+  slopes.areas.resize(4 * sheet_.triangles());
+  slopes.sum.resize(3, static_cast<Eigen::Index>(sides_.size()));
+  slopes.left.resize(3, static_cast<Eigen::Index>(midline_.size()));
+  const LinearField weight = Weight();
+  const auto volume = SetAreas(sheet_, x.data(), wall_->apex.data(), weight, slopes.areas.data());
+  GatherAreas(sheet_, slopes.areas.data(), x.data(), weight, slopes.sum.data(), f);
+  for (size_t m = 0; m < midline_.size(); ++m) {
+    Eigen::Vector3d left = Eigen::Vector3d::Zero();
+    for (const std::int32_t at : midline_[m].left) left += Eigen::Map<const Eigen::Vector3d>(&slopes.areas[at]);
+    slopes.left.col(static_cast<Eigen::Index>(m)) = left;
   }
   // On the border the face of the cone towards the apex moves with the vertices.
   const std::vector<int>& border = wall_->border;
   for (size_t i = 0; i < border.size(); ++i) {
     const int before = border[(i + border.size() - 1) % border.size()], after = border[(i + 1) % border.size()];
     const Eigen::Vector3d at = x.col(border[i]) - wall_->apex, along = x.col(before) - x.col(after);
-    slopes.of[border_sides_[i]].col(border[i]) += at.cross(along) / 6;
+    slopes.sum.col(border[i] - sheet_.first_vertex) += at.cross(along) / 6;
   }
   return volume;
+}
+
+std::array<double, 2> ThoraxPressures::Swept(const ConstPoints& v, const Slopes& slopes) const {
+  std::array<double, 2> swept = {};
+  const double *rate = v.col(sheet_.first_vertex).data(), *slope = slopes.sum.data();
+  for (size_t i = 0; i < sides_.size(); ++i, rate += 3, slope += 3) {
+    swept[sides_[i]] += rate[0] * slope[0] + rate[1] * slope[1] + rate[2] * slope[2];
+  }
+  for (size_t m = 0; m < midline_.size(); ++m) {
+    const double left =
+        slopes.left.col(static_cast<Eigen::Index>(m)).dot(v.col(sheet_.first_vertex + midline_[m].vertex));
+    swept[kLeft] += left, swept[kRight] -= left;
+  }
+  return swept;
+}
+
+void ThoraxPressures::AddSlopes(double right, double left, const Slopes& slopes, MutablePoints g) const {
+  const double factors[2] = {right, left};
+  const double* slope = slopes.sum.data();
+  double* to = g.col(sheet_.first_vertex).data();
+  for (size_t i = 0; i < sides_.size(); ++i, slope += 3, to += 3) {
+    const double factor = factors[sides_[i]];
+    to[0] += factor * slope[0], to[1] += factor * slope[1], to[2] += factor * slope[2];
+  }
+  for (size_t m = 0; m < midline_.size(); ++m) {
+    g.col(sheet_.first_vertex + midline_[m].vertex) += (left - right) * slopes.left.col(static_cast<Eigen::Index>(m));
+  }
 }
 
 double ThoraxPressures::Recoil(double volume) const {
@@ -106,14 +165,14 @@ double ThoraxPressures::AbdominalSlope(double displaced) const {
   return (1 + 3 * ratio * ratio) / abdomen.compliance();
 }
 
-ThoraxPressures::Sides ThoraxPressures::SidesAt(const EvalContext& at, Slopes& slopes) const {
+ThoraxPressures::Sides ThoraxPressures::SidesAt(const EvalContext& at, Slopes& slopes, double* f) const {
   Sides now;
-  const std::array<double, 2> cones = Cones(at.x, slopes);
+  const std::array<double, 2> cones = Cones(at.x, slopes, f), swept_of = Swept(at.v, slopes);
   now.cage = wall_->Position(at);
   const CagePosition rate = wall_->Rate(at);
   for (const size_t h : {kRight, kLeft}) {
     const CageQuadratic& wall = WallVolume(h);
-    const double swept = Dot(slopes.of[h], at.v);
+    const double swept = swept_of[h];
     now.volume[h] = wall.At(now.cage) - (cones[h] - rest_cones_[h]) + WithSign(h) * shift_.Value(at.x);
     now.flow[h] = wall.ByPump(now.cage) * rate.pump + wall.ByBucket(now.cage) * rate.bucket - swept +
                   WithSign(h) * shift_.Rate(at.v);
@@ -133,9 +192,9 @@ ThoraxPressures::Sides ThoraxPressures::SidesAt(const EvalContext& at, Slopes& s
 
 void ThoraxPressures::AddForce(const EvalContext& at, MutablePoints f) const {
   Slopes& slopes = at.scratch.Get<Slopes>();
-  const Sides now = SidesAt(at, slopes);
+  const Sides now = SidesAt(at, slopes, f.data());
+  AddSlopes(now.abdominal - now.pleural[kRight], now.abdominal - now.pleural[kLeft], slopes, f);
   for (const size_t h : {kRight, kLeft}) {
-    f += (now.abdominal - now.pleural[h]) * slopes.of[h];
     const CageQuadratic& wall = WallVolume(h);
     wall_->pump.AddForce(now.pleural[h] * wall.ByPump(now.cage), f);
     wall_->bucket.AddForce(now.pleural[h] * wall.ByBucket(now.cage), f);
@@ -144,67 +203,64 @@ void ThoraxPressures::AddForce(const EvalContext& at, MutablePoints f) const {
   shift_.AddForce(now.pleural[kRight] - now.pleural[kLeft] - shift / scene_.lungs().mediastinal_compliance() -
                       shift_damping_ * shift_.Rate(at.v),
                   f);
-  const Eigen::Vector3d weight = ToEigen(scene_.abdomen().weight());
-  if (weight.isZero()) return;
-  for (const auto& [corners, side] : triangles_) {
-    const Eigen::Vector3d a = at.x.col(corners[0]), b = at.x.col(corners[1]), c = at.x.col(corners[2]);
-    const Eigen::Vector3d push = weight.dot((a + b + c) / 3 - centre_) / 6 * (b - a).cross(c - a);
-    for (const int i : corners) f.col(i) += push;
-  }
 }
 
-void ThoraxPressures::AddVolumeSlope(size_t side, double factor, const Slopes& slopes, const CagePosition& k,
-                                     Points& g) const {
-  g -= factor * slopes.of[side];
-  wall_->pump.AddForce(factor * WallVolume(side).ByPump(k), g);
-  wall_->bucket.AddForce(factor * WallVolume(side).ByBucket(k), g);
-  shift_.AddForce(factor * WithSign(side), g);
+void ThoraxPressures::SetVolumeSlopes(double right, double left, const Slopes& slopes, const CagePosition& k,
+                                      Points& g) const {
+  g.setZero();
+  AddSlopes(-right, -left, slopes, g);
+  const auto by = [&](double on_right, double on_left) { return right * on_right + left * on_left; };
+  wall_->pump.AddForce(by(WallVolume(kRight).ByPump(k), WallVolume(kLeft).ByPump(k)), g);
+  wall_->bucket.AddForce(by(WallVolume(kRight).ByBucket(k), WallVolume(kLeft).ByBucket(k)), g);
+  shift_.AddForce(by(WithSign(kRight), WithSign(kLeft)), g);
 }
 
 void ThoraxPressures::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   Slopes& slopes = at.scratch.Get<Slopes>();
-  const Sides now = SidesAt(at, slopes);
+  const Sides now = SidesAt(at, slopes, nullptr);
   Points g(3, at.x.cols());
-  for (const size_t h : {kRight, kLeft}) {
-    g.setZero();
-    AddVolumeSlope(h, 1, slopes, now.cage, g);
-    sink.AddOuter(RecoilSlope(now.volume[h]), g);
-  }
-  g = slopes.of[kRight] + slopes.of[kLeft];
+  SetVolumeSlopes(1, 0, slopes, now.cage, g);
+  sink.AddOuter(RecoilSlope(now.volume[kRight]), g);
+  SetVolumeSlopes(0, 1, slopes, now.cage, g);
+  sink.AddOuter(RecoilSlope(now.volume[kLeft]), g);
+  g.setZero();
+  AddSlopes(1, 1, slopes, g);
   sink.AddOuter(AbdominalSlope(now.displaced), g);
   Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
   block(shift_.axis, shift_.axis) = 1 / (scene_.lungs().mediastinal_compliance() * shift_.scale * shift_.scale);
   sink.Add(shift_.vertex, shift_.vertex, block);
 }
 
+// The resistances of both lungs, 2 R_p (v_R'^2 + v_L'^2) + R_c (v_R' + v_L')^2, by the sum of the flows and by their
+// difference.
 void ThoraxPressures::AddSharedDamping(const EvalContext& at, OuterProducts& shared) const {
   struct Gradient {
     Points g;
   };
   Slopes& slopes = at.scratch.Get<Slopes>();
   Points& g = at.scratch.Get<Gradient>().g;
-  Cones(at.x, slopes);
+  g.resize(3, at.x.cols());
+  Cones(at.x, slopes, nullptr);
   const CagePosition k = wall_->Position(at);
-  const v1::LungPair& lungs = scene_.lungs();
-  const auto add = [&](double resistance, double right, double left) {
-    if (resistance <= 0) return;
-    g.setZero(3, at.x.cols());
-    AddVolumeSlope(kRight, right, slopes, k, g);
-    AddVolumeSlope(kLeft, left, slopes, k, g);
-    shared.Add(resistance, g);
-  };
-  add(2 * lungs.peripheral_resistance(), 1, 0);
-  add(2 * lungs.peripheral_resistance(), 0, 1);
-  add(lungs.resistance() - lungs.peripheral_resistance(), 1, 1);
-  if (scene_.abdomen().resistance() > 0) {
-    g = slopes.of[kRight] + slopes.of[kLeft];
-    shared.Add(scene_.abdomen().resistance(), g);
+  const double peripheral = scene_.lungs().peripheral_resistance();
+  const double common = std::max(0.0, scene_.lungs().resistance() - peripheral);
+  if (peripheral + common > 0) {
+    SetVolumeSlopes(1, 1, slopes, k, g);
+    shared.Add(peripheral + common, g);
   }
+  if (peripheral > 0) {
+    SetVolumeSlopes(1, -1, slopes, k, g);
+    shared.Add(peripheral, g);
+  }
+  if (scene_.abdomen().resistance() <= 0) return;
+  g.setZero();
+  AddSlopes(1, 1, slopes, g);
+  shared.Add(scene_.abdomen().resistance(), g);
 }
 
 double ThoraxPressures::Energy(const EvalContext& at) const {
   Slopes& slopes = at.scratch.Get<Slopes>();
-  const Sides now = SidesAt(at, slopes);
+  const Sides now = SidesAt(at, slopes, nullptr);
   const double room = scene_.lungs().room() / 2, shift = shift_.Value(at.x);
   double energy = shift * shift / (2 * scene_.lungs().mediastinal_compliance());
   for (const double volume : now.volume) {
@@ -215,14 +271,31 @@ double ThoraxPressures::Energy(const EvalContext& at) const {
   const double v = now.displaced;
   const double ratio = v / (v > 0 ? scene_.abdomen().stiffening_volume_out() : scene_.abdomen().stiffening_volume_in());
   energy += v * v / (2 * scene_.abdomen().compliance()) * (1 + ratio * ratio / 2);
-  return energy + (scene_.pleural_pressure() + scene_.transdiaphragmatic_pressure()) * v;
+  return energy + (scene_.pleural_pressure() + scene_.transdiaphragmatic_pressure()) * v + EnergyOfWeight(at.x);
+}
+
+// The integral of the weight's pressure over the cones, with its sign reversed.
+double ThoraxPressures::EnergyOfWeight(const ConstPoints& x) const {
+  const Eigen::Vector3d slope = ToEigen(scene_.abdomen().weight());
+  if (slope.isZero()) return 0;
+  double energy = 0;
+  for (const auto& packets : sheet_.packets) {
+    for (const TrianglePacket& packet : packets) {
+      for (int lane = 0; lane < kPacketTriangles; ++lane) {
+        const Eigen::Vector3d a = x.col(packet.a[lane] / 3), b = x.col(packet.b[lane] / 3), c = x.col(packet.c[lane] / 3);
+        const double cone = (a - wall_->apex).dot((b - a).cross(c - a)) / 6;
+        energy -= cone * slope.dot((wall_->apex + a + b + c) / 4 - centre_);
+      }
+    }
+  }
+  return energy;
 }
 
 std::span<const Force::Output> ThoraxPressures::outputs() const { return kThoraxOutputs; }
 
 double ThoraxPressures::Read(size_t output, const EvalContext& at) const {
   Slopes& slopes = at.scratch.Get<Slopes>();
-  const Sides now = SidesAt(at, slopes);
+  const Sides now = SidesAt(at, slopes, nullptr);
   const v1::LungPair& lungs = scene_.lungs();
   const double flow = now.flow[kRight] + now.flow[kLeft], pleural = (now.pleural[kRight] + now.pleural[kLeft]) / 2;
   switch (output) {

@@ -21,8 +21,10 @@
 
 #include <array>
 #include <memory>
+#include <cstdint>
 #include <vector>
 
+#include "server/mechanics/breathing/sheet_kernel.h"
 #include "server/mechanics/model_builder.h"
 #include "server/mechanics/motions/insertion.h"
 
@@ -52,20 +54,29 @@ class ThoraxPressures final : public Force {
     double displaced = 0, displaced_rate = 0, abdominal = 0;     // [m^3], [m^3/s], [Pa]
     CagePosition cage;
   };
-  struct Triangle {
-    Eigen::Vector3i corners;  // simulated vertices
-    size_t side;
-  };
-  // dS_h/dx of each side, 3 x simulated vertices [m^2].
+  // The derivatives of the cones by the sheet's vertices [m^2]: a vertex is of one side, or of both on the midline.
   struct Slopes {
-    std::array<Points, 2> of;
+    Points sum;   // dS/dx, 3 x the sheet's vertices
+    Points left;  // dS_left/dx of the midline's vertices
+    std::vector<double> areas;
+  };
+  struct MidlineVertex {
+    int vertex;                      // of the sheet
+    std::vector<std::int32_t> left;  // its triangles on the left, as in SheetLayout::around
   };
   ThoraxPressures(std::string name, const v1::ThoraxPressures& scene, std::shared_ptr<const CageWall> wall)
       : Force(std::move(name)), scene_(scene), wall_(std::move(wall)) {}
   void AddSheet(const BodyModel& body, const Model& model);
-  // Sets the slopes and returns S of each side [m^3].
-  std::array<double, 2> Cones(const ConstPoints& x, Slopes& slopes) const;
-  Sides SidesAt(const EvalContext& at, Slopes& slopes) const;
+  void AddVertices(const std::vector<std::array<std::vector<std::int32_t>, 2>>& around);
+  double EnergyOfWeight(const ConstPoints& x) const;
+  LinearField Weight() const;
+  // Sets the slopes, adds the force of the weight to f unless it is null, and returns S of each side [m^3].
+  std::array<double, 2> Cones(const ConstPoints& x, Slopes& slopes, double* f) const;
+  // Returns dS_h/dt of each side [m^3/s].
+  std::array<double, 2> Swept(const ConstPoints& v, const Slopes& slopes) const;
+  // Adds right dS_right/dx + left dS_left/dx to g, 3 x simulated vertices.
+  void AddSlopes(double right, double left, const Slopes& slopes, MutablePoints g) const;
+  Sides SidesAt(const EvalContext& at, Slopes& slopes, double* f) const;
   double Recoil(double volume) const;       // of one lung [Pa]
   double RecoilSlope(double volume) const;  // [Pa/m^3]
   double AbdominalPressure(double displaced) const;
@@ -73,17 +84,18 @@ class ThoraxPressures final : public Force {
   const CageQuadratic& WallVolume(size_t side) const {
     return side == kRight ? wall_->volumes.right : wall_->volumes.left;
   }
-  // Adds factor dv_h/d(all) to g, vertices and coordinates.
-  void AddVolumeSlope(size_t side, double factor, const Slopes& slopes, const CagePosition& k, Points& g) const;
+  // Sets g to right dv_right/d(all) + left dv_left/d(all), of vertices and coordinates.
+  void SetVolumeSlopes(double right, double left, const Slopes& slopes, const CagePosition& k, Points& g) const;
 
   const v1::ThoraxPressures scene_;
   const std::shared_ptr<const CageWall> wall_;
   Coordinate shift_;  // of the mediastinum, to the left [m^3]
   double shift_damping_ = 0;
-  std::vector<Triangle> triangles_;
-  std::vector<size_t> border_sides_;      // of each vertex of the wall's border
+  SheetLayout sheet_;
+  std::vector<std::uint8_t> sides_;       // of each vertex of the sheet; kRight on the midline
+  std::vector<MidlineVertex> midline_;
   std::array<double, 2> rest_cones_ = {};  // S_h0 [m^3]
-  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  // area-weighted mean of the sheet at rest [m]
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  // where the weight's pressure is 0 [m]
 };
 
 }  // namespace phrenic

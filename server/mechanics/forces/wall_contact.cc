@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::array<Force::Output, 2> kContactOutputs = {{{"apposed_area", "m^2"}, {"force", "N"}}};
 constexpr double kTouching = 1e-3;        // largest distance of an apposed vertex from the wall [m]
-constexpr double kTouchingAtRest = 1.5e-3;  // of one that may rest on it [m]
+constexpr double kRestsWithin = 1.5e-3;   // of one that may rest on it [m]
+constexpr double kSteepestRest = 1.2;     // length of grad g: where the wall is steeper no vertex rests on it
 
 }  // namespace
 
@@ -30,12 +31,35 @@ absl::StatusOr<std::unique_ptr<Force>> WallContact::Make(const v1::WallContact& 
     const Eigen::VectorXd areas = VertexAreas(body.mesh.vertices, body.mesh.triangles);
     for (int i = 0; i < areas.size(); ++i) {
       const int vertex = body.first_vertex + i;
-      if (builder.model.inverse_mass[vertex] > 0) force->sliders_.push_back({vertex, areas[i]});
+      if (builder.model.inverse_mass[vertex] > 0) force->sliders_.push_back({.vertex = vertex, .area = areas[i]});
     }
   }
+  force->PlaceAtRest(builder.model);
   builder.ReportElement("force", force->name(), static_cast<std::int64_t>(force->sliders_.size()), "vertices",
                         absl::StrFormat("slide on %s, %g Pa/m", scene.wall(), scene.stiffness()));
   return force;
+}
+
+// What is outside of the wall at rest touches it there.
+void WallContact::PlaceAtRest(const Model& model) {
+  WallTable table;
+  wall_->wall.Evaluate({}, table);
+  for (Slider& slider : sliders_) {
+    const WallGap gap = wall_->wall.Gap(table, model.rest.col(slider.vertex));
+    slider.rest_gap = gap.gap;
+    slider.rest_gradient = gap.gradient.norm();
+    slider.touching = std::max(0.0, gap.gap);
+  }
+}
+
+void WallContact::RestOnSurface(const Eigen::VectorXd& pushes) {
+  for (Slider& slider : sliders_) {
+    const double push = pushes[slider.vertex];
+    if (push <= 0) continue;
+    const double depth = push / (stiffness_ * slider.area * slider.rest_gradient);
+    slider.touching = slider.rest_gap - depth;
+    margin_ = std::max(margin_, -slider.touching);
+  }
 }
 
 const WallTable& WallContact::TableAt(const EvalContext& at) const {
@@ -44,73 +68,72 @@ const WallTable& WallContact::TableAt(const EvalContext& at) const {
   return table;
 }
 
-void WallContact::AddForce(const EvalContext& at, MutablePoints f) const {
+template <typename Visit>
+void WallContact::ForEachNear(const EvalContext& at, const Visit& visit) const {
   const WallTable& table = TableAt(at);
-  double pump = 0, bucket = 0;
   for (const Slider& slider : sliders_) {
-    const WallGap gap = wall_->wall.Gap(table, at.x.col(slider.vertex));
-    if (gap.gap <= 0) continue;
-    const double push = stiffness_ * slider.area * std::min(gap.gap, largest_depth_);
+    const Eigen::Vector3d point = at.x.col(slider.vertex);
+    if (!wall_->wall.IsFarInside(table, point, margin_)) visit(slider, wall_->wall.Gap(table, point));
+  }
+}
+
+void WallContact::AddForce(const EvalContext& at, MutablePoints f) const {
+  double pump = 0, bucket = 0;
+  ForEachNear(at, [&](const Slider& slider, const WallGap& gap) {
+    if (gap.gap <= slider.touching) return;
+    const double push = stiffness_ * slider.area * std::min(gap.gap - slider.touching, largest_depth_);
     f.col(slider.vertex) -= push * gap.gradient;
     pump -= push * gap.by_pump;
     bucket -= push * gap.by_bucket;
-  }
+  });
   wall_->pump.AddForce(pump, f);
   wall_->bucket.AddForce(bucket, f);
 }
 
 // Without the coupling to the cage, which is far softer.
 void WallContact::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
-  const WallTable& table = TableAt(at);
-  for (const Slider& slider : sliders_) {
-    const WallGap gap = wall_->wall.Gap(table, at.x.col(slider.vertex));
-    if (gap.gap <= 0 || gap.gap > largest_depth_) continue;
-    sink.Add(slider.vertex, slider.vertex,
-             stiffness_ * slider.area * gap.gradient * gap.gradient.transpose());
-  }
+  ForEachNear(at, [&](const Slider& slider, const WallGap& gap) {
+    if (!Yields(slider, gap)) return;
+    sink.Add(slider.vertex, slider.vertex, stiffness_ * slider.area * gap.gradient * gap.gradient.transpose());
+  });
 }
 
 void WallContact::AddLatentStiffness(const EvalContext& at, StiffnessSink& sink) const {
   const WallTable& table = TableAt(at);
   for (const Slider& slider : sliders_) {
     const WallGap gap = wall_->wall.Gap(table, at.x.col(slider.vertex));
-    if (gap.gap > 0 && gap.gap <= largest_depth_) continue;
-    sink.Add(slider.vertex, slider.vertex,
-             stiffness_ * slider.area * gap.gradient * gap.gradient.transpose());
+    if (Yields(slider, gap)) continue;
+    sink.Add(slider.vertex, slider.vertex, stiffness_ * slider.area * gap.gradient * gap.gradient.transpose());
   }
 }
 
 void WallContact::AddContactNormals(const EvalContext& at, MutablePoints normals) const {
-  const WallTable& table = TableAt(at);
-  for (const Slider& slider : sliders_) {
-    const WallGap gap = wall_->wall.Gap(table, at.x.col(slider.vertex));
-    if (gap.gap > -kTouchingAtRest) normals.col(slider.vertex) += gap.gradient.normalized();
-  }
+  ForEachNear(at, [&](const Slider& slider, const WallGap& gap) {
+    const double steepness = gap.gradient.norm();
+    if (gap.gap > -kRestsWithin && steepness < kSteepestRest) normals.col(slider.vertex) += gap.gradient / steepness;
+  });
 }
 
 double WallContact::Energy(const EvalContext& at) const {
-  const WallTable& table = TableAt(at);
   double energy = 0;
-  for (const Slider& slider : sliders_) {
-    const double gap = wall_->wall.Gap(table, at.x.col(slider.vertex)).gap;
-    if (gap <= 0) continue;
-    const double depth = std::min(gap, largest_depth_);
-    energy += stiffness_ * slider.area * depth * (gap - depth / 2);
-  }
+  ForEachNear(at, [&](const Slider& slider, const WallGap& gap) {
+    const double beyond = gap.gap - slider.touching;
+    if (beyond <= 0) return;
+    const double depth = std::min(beyond, largest_depth_);
+    energy += stiffness_ * slider.area * depth * (beyond - depth / 2);
+  });
   return energy;
 }
 
 std::span<const Force::Output> WallContact::outputs() const { return kContactOutputs; }
 
 double WallContact::Read(size_t output, const EvalContext& at) const {
-  const WallTable& table = TableAt(at);
   double area = 0, force = 0;
-  for (const Slider& slider : sliders_) {
-    const WallGap gap = wall_->wall.Gap(table, at.x.col(slider.vertex));
-    if (gap.gap > -kTouching) area += slider.area;
-    const double push = stiffness_ * slider.area * std::clamp(gap.gap, 0.0, largest_depth_);
+  ForEachNear(at, [&](const Slider& slider, const WallGap& gap) {
+    if (gap.gap > std::min(slider.touching, 0.0) - kTouching) area += slider.area;
+    const double push = stiffness_ * slider.area * std::clamp(gap.gap - slider.touching, 0.0, largest_depth_);
     force += push * gap.gradient.norm();
-  }
+  });
   return output == 0 ? area : force;
 }
 

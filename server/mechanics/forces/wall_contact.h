@@ -1,7 +1,8 @@
 // Contact of a sheet with the inside of a rib cage, along which it slides without friction. With the gap
-// g = r - R(azimuth, z; k) of a vertex of area A, g > 0 outside (breathing/inner_wall.h), and the stiffness c [Pa/m],
-//   E = c A g^2/2  [J],  f = -c A g grad g  [N],  Q_j = c A g dR/dk_j  [J],
-// Q the generalised forces on the cage. Beyond the largest depth the force is constant.
+// g = r - R(turn, z; k) of a vertex of area A, g > 0 outside (breathing/inner_wall.h), and the stiffness c [Pa/m],
+//   d = max(0, g - g_0),  E = c A d^2/2  [J],  f = -c A d grad g  [N],  Q_j = c A d dR/dk_j  [J],
+// Q the generalised forces on the cage. g_0 is the vertex' own: its gap at rest if it is outside there, and less where
+// the wall is to push at rest. Beyond the largest depth the force is constant.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_WALL_CONTACT_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_WALL_CONTACT_H_
 
@@ -23,6 +24,7 @@ class WallContact final : public Force {
   void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
   void AddLatentStiffness(const EvalContext& at, StiffnessSink& sink) const override;
   void AddContactNormals(const EvalContext& at, MutablePoints normals) const override;
+  void RestOnSurface(const Eigen::VectorXd& pushes) override;
   double Energy(const EvalContext& at) const override;
   bool conservative() const override { return true; }
   // The area of the vertices within a millimetre of the wall [m^2], and the force on it [N].
@@ -31,19 +33,29 @@ class WallContact final : public Force {
 
  private:
   struct Slider {
-    int vertex;
-    double area;  // at rest [m^2]
+    int vertex = 0;
+    double area = 0;                        // at rest [m^2]
+    double rest_gap = 0, touching = 0;      // gaps at rest, and g_0 [m]
+    double rest_gradient = 1;               // length of grad g at rest
   };
   WallContact(std::string name, const v1::WallContact& scene, std::shared_ptr<const CageWall> wall)
       : Force(std::move(name)),
         stiffness_(scene.stiffness()),
         largest_depth_(scene.largest_depth()),
         wall_(std::move(wall)) {}
+  void PlaceAtRest(const Model& model);
   const WallTable& TableAt(const EvalContext& at) const;
+  // Calls visit(slider, gap) for those that may touch the wall.
+  template <typename Visit>
+  void ForEachNear(const EvalContext& at, const Visit& visit) const;
+  bool Yields(const Slider& slider, const WallGap& gap) const {
+    return gap.gap > slider.touching && gap.gap <= slider.touching + largest_depth_;
+  }
 
   const double stiffness_, largest_depth_;  // [Pa/m], [m]
   const std::shared_ptr<const CageWall> wall_;
   std::vector<Slider> sliders_;
+  double margin_ = 3e-3;  // a vertex that is farther inside touches nothing [m]
 };
 
 }  // namespace phrenic

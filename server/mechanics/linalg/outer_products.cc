@@ -1,7 +1,10 @@
 #include "server/mechanics/linalg/outer_products.h"
 
+#include <Eigen/Cholesky>
+
 namespace phrenic {
 void OuterProducts::Add(double scale, const Points& g) {
+  if (scale == 0) return;
   if (used_ == terms_.size()) terms_.emplace_back();
   terms_[used_].scale = scale;
   terms_[used_].g = g;
@@ -31,6 +34,26 @@ void OuterProducts::CorrectPrepared(double factor, Points& y) const {
 void OuterProducts::Correct(double factor, absl::FunctionRef<void(const Points&, Points&)> inverse, Points& y) {
   Prepare(factor, inverse);
   CorrectPrepared(factor, y);
+}
+
+// (B + G D G^T)^-1 b = y - W G (D^-1 + G^T W G)^-1 G^T y with D = factor times the scales and W = B^-1.
+void OuterProducts::CorrectDiagonal(double factor, const Eigen::VectorXd& weights, Points& y) {
+  const auto terms = static_cast<Eigen::Index>(used_);
+  gram_.resize(terms, terms);
+  along_.resize(terms);
+  for (Eigen::Index a = 0; a < terms; ++a) {
+    const Points& g = terms_[static_cast<size_t>(a)].g;
+    along_[a] = Dot(g, y);
+    for (Eigen::Index b = 0; b <= a; ++b) {
+      const Points& other = terms_[static_cast<size_t>(b)].g;
+      gram_(a, b) = gram_(b, a) = g.cwiseProduct(other).colwise().sum().dot(weights);
+    }
+    gram_(a, a) += 1 / (factor * terms_[static_cast<size_t>(a)].scale);
+  }
+  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(gram_).solveInPlace(along_);
+  for (Eigen::Index a = 0; a < terms; ++a) {
+    y.noalias() -= terms_[static_cast<size_t>(a)].g * (along_[a] * weights).asDiagonal();
+  }
 }
 
 double OuterProducts::Bound(const Eigen::VectorXd& weights) const {

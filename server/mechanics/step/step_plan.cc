@@ -202,8 +202,7 @@ void StepPlan::ApplySharedDamping(double dt, const State& start, const StepEnd& 
   if (!shares_damping_ || work.shared_damping.empty()) return;
   Points& gain = work.Stage(0);
   gain = end.v - start.v;
-  work.shared_damping.Correct(
-      dt, [this](const Points& b, Points& y) { y = b * model_.inverse_mass.asDiagonal(); }, gain);
+  work.shared_damping.CorrectDiagonal(dt, model_.inverse_mass, gain);
   end.v = start.v + gain;
   end.x = start.x;
   AddToFree(dt, end.v, end.x);

@@ -1,0 +1,41 @@
+// SIMD kernel of the area vectors of a sheet (thorax_pressures.h), eight triangles at a time. Google Highway compiles it
+// for several instruction sets and selects the best one at run time. The results are bitwise equal on all of them.
+#ifndef PHRENIC_SERVER_MECHANICS_BREATHING_SHEET_KERNEL_H_
+#define PHRENIC_SERVER_MECHANICS_BREATHING_SHEET_KERNEL_H_
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "server/mechanics/breathing/chamber_kernel.h"
+
+namespace phrenic {
+
+// Triangles right of the midline and left of it, and the triangles around each vertex.
+struct SheetLayout {
+  std::array<std::vector<TrianglePacket>, 2> packets;  // right, left
+  std::vector<std::int32_t> first;   // of each vertex in `around`, and the end
+  std::vector<std::int32_t> around;  // offsets in the array of areas [doubles]: four times the triangle's place
+  int first_vertex = 0;              // simulated
+
+  std::size_t triangles() const { return kPacketTriangles * (packets[0].size() + packets[1].size()); }
+};
+
+// A linear field p(x) = slope . x - offset.
+struct LinearField {
+  double slope[3] = {}, offset = 0;
+};
+
+// Sets four numbers of each triangle abc in `areas`: (b - a) x (c - a)/6 [m^2] and the mean of the field on it. Returns
+// the volumes of the cones from `apex` over the triangles of each side [m^3]. x is 3 x n. Thread-safe.
+std::array<double, 2> SetAreas(const SheetLayout& layout, const double* x, const double* apex, const LinearField& field,
+                               double* areas);
+
+// Sets `slopes`, 3 x the sheet's vertices, to the sum s_i of the areas around each vertex [m^2] and, unless `f` is null,
+// adds to f, 3 x the same, the forces of a pressure p(x) [Pa]: (s_i p(x_i) + 3 sum of area times mean p)/4 [N].
+void GatherAreas(const SheetLayout& layout, const double* areas, const double* x, const LinearField& field,
+                 double* slopes, double* f);
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_BREATHING_SHEET_KERNEL_H_
