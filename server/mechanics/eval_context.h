@@ -19,6 +19,7 @@ struct EvalContext {
   double time;                       // [s]
   double breath;                     // the waveform's signal, -1 to 1; 0 at rest
   double breath_rate;                // its time derivative [1/s]
+  double expiration;                 // the signal of the expiratory muscles, 0 to 1
   const v1::Parameters& parameters;  // every field set
   const ConstPoints x;               // positions, 3 x n [m]
   const ConstPoints v;               // velocities, 3 x n [m/s]

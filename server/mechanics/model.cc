@@ -1,5 +1,7 @@
 #include "server/mechanics/model.h"
 
+#include "server/mechanics/breath_signal.h"
+
 #include <cmath>
 #include <numbers>
 
@@ -41,18 +43,6 @@ const BodyModel& Model::BodyOf(int simulated_vertex) const {
   return *found;
 }
 
-double BreathSignal(v1::Waveform waveform, double phase) {
-  const double angle = 2 * std::numbers::pi * phase;
-  if (waveform == v1::WAVEFORM_RAISED_COSINE) return (1 - std::cos(angle)) / 2;
-  return std::sin(angle);
-}
-
-double BreathSlope(v1::Waveform waveform, double phase) {
-  const double angle = 2 * std::numbers::pi * phase;
-  if (waveform == v1::WAVEFORM_RAISED_COSINE) return std::numbers::pi * std::sin(angle);
-  return 2 * std::numbers::pi * std::cos(angle);
-}
-
 EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters, const State& state,
                             const Scratch& scratch) {
   return MakeEvalContext(model, parameters, state, state.time, state.phase, scratch);
@@ -60,10 +50,11 @@ EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters
 
 EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters, const State& state, double time,
                             double phase, const Scratch& scratch) {
-  const v1::Waveform waveform = model.scene.breath().waveform();
+  const BreathSignal signal = BreathSignalAt(model.scene.breath(), parameters, phase);
   return {.time = time,
-          .breath = BreathSignal(waveform, phase),
-          .breath_rate = BreathSlope(waveform, phase) / parameters.breath_length(),
+          .breath = signal.value,
+          .breath_rate = signal.slope / parameters.breath_length(),
+          .expiration = signal.expiration,
           .parameters = parameters,
           .x = state.x,
           .v = state.v,

@@ -111,10 +111,6 @@ struct Model {
   const BodyModel& BodyOf(int simulated_vertex) const;
 };
 
-// Returns the breath's signal at a phase [breaths], and its derivative with respect to the phase.
-double BreathSignal(v1::Waveform waveform, double phase);
-double BreathSlope(v1::Waveform waveform, double phase);
-
 // Returns the moment of a state, which must outlive it. `scratch` is used by one thread at a time.
 EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters, const State& state,
                             const Scratch& scratch = {});

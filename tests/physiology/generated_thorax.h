@@ -16,17 +16,20 @@
 
 namespace phrenic {
 
+// Returns a shipped scene, for example "thorax", compiled.
+inline std::shared_ptr<const Model> CompileShipped(const std::string& name) {
+  std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/" + name + ".textproto");
+  std::stringstream text;
+  text << file.rdbuf();
+  return *Compile(*schema::ParseScene(name + ".textproto", text.str()), [](const v1::Body& body) {
+    return anatomy::Generate(body.anatomy(), body.generated().resolution_mm(), body.generated().sheet());
+  });
+}
+
 // A fixture whose model all tests of a suite share.
 class GeneratedThorax : public testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/thorax.textproto");
-    std::stringstream text;
-    text << file.rdbuf();
-    model_ = *Compile(*schema::ParseScene("thorax.textproto", text.str()), [](const v1::Body& body) {
-      return anatomy::Generate(body.anatomy(), body.generated().resolution_mm(), body.generated().sheet());
-    });
-  }
+  static void SetUpTestSuite() { model_ = CompileShipped("thorax"); }
   static void TearDownTestSuite() { model_.reset(); }
 
   // Returns the model's parameters with those of a preset merged in.

@@ -56,6 +56,7 @@ struct HillLaw {
   double shortening_rate = 0;  // the rate without load [1/s]; 0: no dependence
   double lengthening = 1;      // f_max [-]
 
+  bool active() const { return shortening_rate > 0; }
   double At(double rate) const;
 };
 HillLaw MakeHillLaw(const v1::Muscle& scene);

@@ -68,18 +68,16 @@ std::array<double, 2> SetAreasHere(const SheetLayout& layout, const double* x, c
 }
 
 void GatherHere(const SheetLayout& layout, const double* areas, const double* x, const LinearField& field,
-                double* slopes, double* f) {
+                double* slopes, double* push) {
   const std::size_t vertices = layout.first.size() - 1;
-  for (std::size_t i = 0; i < vertices; ++i, x += 3, slopes += 3) {
+  for (std::size_t i = 0; i < vertices; ++i, x += 3, slopes += 3, push += 3) {
     double sum[3] = {}, weighted[3] = {};
     for (std::int32_t t = layout.first[i]; t < layout.first[i + 1]; ++t) {
       const double* const area = areas + layout.around[t];
       for (int k = 0; k < 3; ++k) sum[k] += area[k], weighted[k] += area[3] * area[k];
     }
-    for (int k = 0; k < 3; ++k) slopes[k] = sum[k];
-    if (f == nullptr) continue;
     const double here = field.slope[0] * x[0] + field.slope[1] * x[1] + field.slope[2] * x[2] - field.offset;
-    for (int k = 0; k < 3; ++k) f[3 * i + k] += (here * sum[k] + 3 * weighted[k]) / 4;
+    for (int k = 0; k < 3; ++k) slopes[k] = sum[k], push[k] = (here * sum[k] + 3 * weighted[k]) / 4;
   }
 }
 
@@ -99,9 +97,8 @@ std::array<double, 2> SetAreas(const SheetLayout& layout, const double* x, const
 }
 
 void GatherAreas(const SheetLayout& layout, const double* areas, const double* x, const LinearField& field,
-                 double* slopes, double* f) {
-  HWY_DYNAMIC_DISPATCH(GatherHere)(layout, areas, x + 3 * layout.first_vertex, field, slopes,
-                                   f == nullptr ? nullptr : f + 3 * layout.first_vertex);
+                 double* slopes, double* push) {
+  HWY_DYNAMIC_DISPATCH(GatherHere)(layout, areas, x + 3 * layout.first_vertex, field, slopes, push);
 }
 
 }  // namespace phrenic

@@ -24,6 +24,8 @@ struct SheetLayout {
 // A linear field p(x) = slope . x - offset.
 struct LinearField {
   double slope[3] = {}, offset = 0;
+
+  bool operator==(const LinearField&) const = default;
 };
 
 // Sets four numbers of each triangle abc in `areas`: (b - a) x (c - a)/6 [m^2] and the mean of the field on it. Returns
@@ -31,10 +33,10 @@ struct LinearField {
 std::array<double, 2> SetAreas(const SheetLayout& layout, const double* x, const double* apex, const LinearField& field,
                                double* areas);
 
-// Sets `slopes`, 3 x the sheet's vertices, to the sum s_i of the areas around each vertex [m^2] and, unless `f` is null,
-// adds to f, 3 x the same, the forces of a pressure p(x) [Pa]: (s_i p(x_i) + 3 sum of area times mean p)/4 [N].
+// Sets `slopes`, 3 x the sheet's vertices, to the sum s_i of the areas around each vertex [m^2], and `push`, the same, to
+// the forces of a pressure p(x) [Pa]: (s_i p(x_i) + 3 sum of area times mean p)/4 [N].
 void GatherAreas(const SheetLayout& layout, const double* areas, const double* x, const LinearField& field,
-                 double* slopes, double* f);
+                 double* slopes, double* push);
 
 }  // namespace phrenic
 

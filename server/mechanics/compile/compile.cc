@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "server/mechanics/compile/bodies.h"
 #include "server/mechanics/compile/catalogue.h"
+#include "server/mechanics/compile/idle_parameters.h"
 #include "server/mechanics/compile/masses.h"
 #include "server/mechanics/compile/presets.h"
 #include "server/mechanics/compile/scene_hash.h"
@@ -65,8 +66,19 @@ absl::Status BalanceForces(ModelBuilder& builder) {
   return absl::OkStatus();
 }
 
+absl::Status CheckTrace(const v1::Breath& breath) {
+  if (breath.waveform() != v1::WAVEFORM_TRACE) return absl::OkStatus();
+  if (breath.trace_size() < 2) return FieldError("breath.trace", "WAVEFORM_TRACE needs two values or more");
+  for (int i = 0; i < breath.trace_size(); ++i) {
+    if (breath.trace(i) >= 0 && breath.trace(i) <= 1) continue;
+    return FieldError(absl::StrCat("breath.trace[", i, "]"), absl::StrCat(breath.trace(i), " is outside 0 to 1"));
+  }
+  return absl::OkStatus();
+}
+
 absl::Status AddElements(ModelBuilder& builder) {
   const v1::Scene& scene = builder.model.scene;
+  if (absl::Status s = CheckTrace(scene.breath()); !s.ok()) return s;
   for (int i = 0; i < scene.motions_size(); ++i) {
     if (absl::Status s = AddMotion(scene.motions(i), absl::StrCat("motions[", i, "]"), builder); !s.ok()) return s;
     if (builder.stop.Stopped()) return builder.stop.status();
@@ -130,32 +142,6 @@ void ReportUnused(ModelBuilder& builder) {
 
 void ReportTissue(Model& model) {
   for (const int body : TissueBodies(model)) model.report.mutable_bodies(body)->set_tissue(true);
-}
-
-// Reports the live parameters without effect in this scene, which viewers hide.
-void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
-  const bool ribs = std::any_of(scene.motions().begin(), scene.motions().end(),
-                                [](const v1::Motion& motion) { return motion.has_ribs(); });
-  const bool muscle = std::any_of(scene.forces().begin(), scene.forces().end(),
-                                  [](const v1::Force& force) { return force.has_muscle(); });
-  const bool muscles = std::any_of(scene.forces().begin(), scene.forces().end(), [](const v1::Force& force) {
-    return force.has_action_line() || force.has_fibres() || force.has_muscle();
-  });
-  if (!ribs) {
-    for (const char* name : {"rib_motion", "pump_handle", "bucket_handle"}) report.add_idle_parameters(name);
-  }
-  if (!muscles) report.add_idle_parameters("apply_muscles");
-  const auto has_line = [&scene](v1::Side side) {
-    return std::any_of(scene.forces().begin(), scene.forces().end(),
-                       [side](const v1::Force& force) { return force.action_line().side() == side; });
-  };
-  const bool air = std::any_of(scene.forces().begin(), scene.forces().end(),
-                               [](const v1::Force& force) { return force.action_line().air_load() > 0; });
-  if (!ribs && !air) report.add_idle_parameters("hyperinflation");
-  if (!muscle) report.add_idle_parameters("diaphragm_activation");
-  if (!muscle && !has_line(v1::SIDE_RIGHT)) report.add_idle_parameters("right_activation");
-  if (!muscle && !has_line(v1::SIDE_LEFT)) report.add_idle_parameters("left_activation");
-  if (scene.constraints().empty()) report.add_idle_parameters("apply_links");
 }
 
 void ResolveParameters(Model& model) {

@@ -21,6 +21,7 @@ absl::StatusOr<std::unique_ptr<Force>> ChestWall::Make(const v1::ChestWall& scen
   std::unique_ptr<ChestWall> force(new ChestWall(given.empty() ? "chest_wall" : given));
   force->stiffening_below_rest_ = scene.stiffening_below_rest();
   force->shortening_loss_ = scene.shortening_loss();
+  force->expiratory_share_ = scene.expiratory_share();
   const std::array<const Coordinate*, 2> coordinates = {&(*wall)->pump, &(*wall)->bucket};
   for (size_t i = 0; i < 2; ++i) {
     Handle& handle = force->handles_[i];
@@ -47,18 +48,23 @@ absl::Status ChestWall::BalanceAtRest(const ConstPoints& load, const ConstPoints
 }
 
 double ChestWall::Activation(const EvalContext& at) const {
-  if (!at.parameters.apply_muscles()) return 0;
+  const v1::Parameters& parameters = at.parameters;
+  if (!parameters.apply_muscles()) return 0;
   const double k = (handles_[0].coordinate.Value(at.x) + handles_[1].coordinate.Value(at.x)) / 2;
-  return at.parameters.intercostal_activation() * std::max(0.0, at.breath) * std::clamp(1 - shortening_loss_ * k, 0.0, 1.5);
+  const double raise = parameters.intercostal_activation() * parameters.breath_force() * parameters.rib_motion() *
+                       std::max(0.0, at.breath) * std::clamp(1 - shortening_loss_ * k, 0.0, 1.5);
+  const double lower = expiratory_share_ * parameters.expiratory_activation() * at.expiration;
+  return parameters.muscle_strength() * (raise - lower);
 }
 
 void ChestWall::AddForce(const EvalContext& at, MutablePoints f) const {
-  const double activation = Activation(at);
-  for (const Handle& handle : handles_) {
+  const double activation = Activation(at), shares[] = {at.parameters.pump_handle(), at.parameters.bucket_handle()};
+  for (size_t i = 0; i < handles_.size(); ++i) {
+    const Handle& handle = handles_[i];
     const double k = handle.coordinate.Value(at.x);
-    const double force = handle.rest_load - Stiffness(handle, k) * k - handle.damping * handle.coordinate.Rate(at.v) +
-                         handle.stiffness * handle.share * activation;
-    handle.coordinate.AddForce(force, f);
+    const double pull = handle.stiffness * handle.share * shares[i] * activation;
+    const double damping = handle.damping * handle.coordinate.Rate(at.v);
+    handle.coordinate.AddForce(handle.rest_load - Stiffness(handle, at, k) * k - damping + pull, f);
   }
 }
 
@@ -66,7 +72,7 @@ void ChestWall::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   for (const Handle& handle : handles_) {
     const Coordinate& c = handle.coordinate;
     Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
-    block(c.axis, c.axis) = Stiffness(handle, c.Value(at.x)) / (c.scale * c.scale);
+    block(c.axis, c.axis) = Stiffness(handle, at, c.Value(at.x)) / (c.scale * c.scale);
     sink.Add(c.vertex, c.vertex, block);
   }
 }
@@ -75,7 +81,7 @@ double ChestWall::Energy(const EvalContext& at) const {
   double energy = 0;
   for (const Handle& handle : handles_) {
     const double k = handle.coordinate.Value(at.x);
-    energy += Stiffness(handle, k) * k * k / 2 - handle.rest_load * k;
+    energy += Stiffness(handle, at, k) * k * k / 2 - handle.rest_load * k;
   }
   return energy;
 }

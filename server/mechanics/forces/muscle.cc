@@ -97,12 +97,12 @@ int CentralVertex(const Points& rest, const VertexRange& vertices) {
   return static_cast<int>(vertices.first + nearest);
 }
 
-// The activation of one side. Requires: at.parameters has every field.
-double ActivationOf(const EvalContext& at, bool right) {
+// The activation of one side that the nerve asks for. Requires: at.parameters has every field.
+double DriveOf(const EvalContext& at, bool right) {
   const v1::Parameters& parameters = at.parameters;
   if (!parameters.apply_muscles()) return 0;
   const double side = right ? parameters.right_activation() : parameters.left_activation();
-  return parameters.diaphragm_activation() * std::max(0.0, at.breath) * side;
+  return parameters.diaphragm_activation() * parameters.breath_force() * std::max(0.0, at.breath) * side;
 }
 
 }  // namespace
@@ -131,7 +131,10 @@ absl::StatusOr<std::unique_ptr<Force>> Muscle::Make(const v1::Muscle& scene, con
   muscle->LayOut();
   const auto count = static_cast<std::int64_t>(muscle->triangles_.size());
   builder.ReportElement("force", name, count, "triangles", Describe(scene));
-  if (muscle->advances_scalars()) {
+  if (muscle->activation_time_ > 0) {
+    muscle->first_activation_ = builder.AddInternalScalars(name + ":activation", "1", 2);
+  }
+  if (muscle->hill_.active()) {
     muscle->first_rate_ = builder.AddInternalScalars(name + ":stretch-rate", "1/s", FibreBundles::kCount);
   }
   return muscle;
@@ -142,6 +145,7 @@ Muscle::Muscle(std::string name, const v1::Muscle& scene, const BodyModel& body)
       law_(MakeMuscleLaw(scene)),
       hill_(MakeHillLaw(scene)),
       rate_time_(scene.rate_time()),
+      activation_time_(scene.activation_time()),
       greatest_resting_tension_(scene.greatest_resting_tension()),
       balances_(scene.balanced_at_rest()),
       single_(scene.precision() != v1::PRECISION_DOUBLE),
@@ -155,14 +159,19 @@ void Muscle::LayOut() {
   }
 }
 
+double Muscle::ActivationOf(const EvalContext& at, bool right) const {
+  return first_activation_ < 0 ? DriveOf(at, right) : at.scalars.q[first_activation_ + (right ? 0 : 1)];
+}
+
 Muscle::Tensions Muscle::ActiveTensions(const EvalContext& at) const {
   Tensions active;
   active.fill(1);
-  if (advances_scalars()) {
+  if (hill_.active()) {
     for (int b = 0; b < FibreBundles::kCount; ++b) active[b] = hill_.At(at.scalars.q[first_rate_ + b]);
     bundles_.Smooth(active);
   }
-  const double right = law_.active * ActivationOf(at, true), left = law_.active * ActivationOf(at, false);
+  const double greatest = law_.active * at.parameters.muscle_strength();
+  const double right = greatest * ActivationOf(at, true), left = greatest * ActivationOf(at, false);
   for (int b = 0; b < FibreBundles::kCount; ++b) active[b] *= FibreBundles::OnRight(b) ? right : left;
   return active;
 }
@@ -310,8 +319,15 @@ Muscle::Tensions Muscle::MeanRatesIn(const MuscleLayout<Number>& layout, const E
 
 // Rates are computed in every step, or in every second to fourth if steps are short.
 void Muscle::AdvanceScalars(const EvalContext& end, std::int64_t tick, double dt, ScalarState& scalars) const {
+  if (first_activation_ >= 0) {
+    const double share = dt / (activation_time_ + dt);  // implicit: stable at any step
+    for (const bool right : {true, false}) {
+      double& activation = scalars.q[first_activation_ + (right ? 0 : 1)];
+      activation += share * (DriveOf(end, right) - activation);
+    }
+  }
   const int every = std::clamp(static_cast<int>(kRatesEvery / dt), 1, kMostStepsPerRate);
-  if (!advances_scalars() || tick % every != 0) return;
+  if (!hill_.active() || tick % every != 0) return;
   const Tensions rates = std::visit([&](const auto& layout) { return MeanRatesIn(layout, end); }, layout_);
   const double passed = every * dt, share = passed / (rate_time_ + passed);  // implicit: stable at any step
   for (int b = 0; b < FibreBundles::kCount; ++b) {

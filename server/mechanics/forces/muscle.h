@@ -6,8 +6,8 @@
 // s/m], G the shear stiffness [N/m]. l and m are regularised: l^2 = |F f|^2 + 1e-8. Fibres follow the gradient of the
 // harmonic function from one region to the tendon (Bayer et al. 2012). Force-velocity acts through the low-passed mean
 // rate of each bundle of fibres (breathing/fibre_bundles.h), State::scalars that this force advances. The activation of
-// a side is the live parameter diaphragm_activation times the breath's signal where positive, times right_activation or
-// left_activation; elasticity scales stiffnesses, not tensions. With balanced_at_rest the resting tensions are chosen
+// a side follows the live parameters diaphragm_activation breath_force times the breath's signal where positive, times
+// right_activation or left_activation, with a time constant; muscle_strength scales its force; elasticity scales stiffnesses, not tensions. With balanced_at_rest the resting tensions are chosen
 // to hold the other forces at rest (muscle_prestress.h).
 //
 // Energy is that at fixed activation and rates. The stiffness leaves out negative terms.
@@ -50,7 +50,7 @@ class Muscle final : public Force {
                              Eigen::VectorXd& pushes) override;
 
   void AdvanceScalars(const EvalContext& end, std::int64_t tick, double dt, ScalarState& scalars) const override;
-  bool advances_scalars() const override { return hill_.shortening_rate > 0; }
+  bool advances_scalars() const override { return hill_.active() || activation_time_ > 0; }
 
   // Means over muscle by area at rest: of the stretch along fibres, and of the thickness over that at rest (1/(l m), as
   // tissue is incompressible).
@@ -66,6 +66,7 @@ class Muscle final : public Force {
   using Tensions = FibreBundles::Values;
 
   Muscle(std::string name, const v1::Muscle& scene, const BodyModel& body);
+  double ActivationOf(const EvalContext& at, bool right) const;
   // Returns the active tension of each bundle at force-length 1 [N/m].
   Tensions ActiveTensions(const EvalContext& at) const;
   template <typename Number>
@@ -81,11 +82,13 @@ class Muscle final : public Force {
   const MuscleLaw law_;
   const HillLaw hill_;
   const double rate_time_;                 // [s]
+  const double activation_time_;           // [s]
   const double greatest_resting_tension_;  // [N/m]
   const bool balances_, single_;
   const VertexRange vertices_;  // of the body
   std::vector<MuscleTriangle> triangles_;
   FibreBundles bundles_;
+  int first_activation_ = -1;  // index in State::scalars of the right side's activation; -1: it is not a state
   int first_rate_ = -1;  // index in State::scalars of the rate of the first bundle
   int origin_ = 0;       // the vertex that positions are relative to in single precision
   Layout layout_;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -19,6 +20,11 @@ constexpr std::array<Force::Output, 8> kThoraxOutputs = {{{"volume", "m^3"},
                                                             {"alveolar_pressure", "Pa"},
                                                             {"displaced_volume", "m^3"}}};
 constexpr double kLeastRoom = 0.02;  // of a lung's room: the curve continues along its tangent below
+
+constexpr double kClosedResistance = 1.5e10;  // of a closed airway: some millilitres a minute leak [Pa s/m^3]
+constexpr double kClosingRange = 0.3;         // of the closing volume, over which the airways of a lung close
+constexpr double kMostClosed = 1000;          // the resistance of closed airways over that of open ones
+constexpr double kCollapsed = 0.3;            // volume of a collapsed lung, of that at rest
 
 double WithSign(size_t side) { return side == 0 ? 1 : -1; }
 
@@ -73,7 +79,8 @@ void ThoraxPressures::AddSheet(const BodyModel& body, const Model& model) {
   }
   AddVertices(around);
   Slopes slopes;
-  rest_cones_ = Cones(model.rest, slopes, nullptr);
+  SetSlopes(model.rest, {}, slopes);
+  rest_cones_ = slopes.cones;
 }
 
 void ThoraxPressures::AddVertices(const std::vector<std::array<std::vector<std::int32_t>, 2>>& around) {
@@ -87,18 +94,50 @@ void ThoraxPressures::AddVertices(const std::vector<std::array<std::vector<std::
   sheet_.first.push_back(static_cast<std::int32_t>(sheet_.around.size()));
 }
 
-LinearField ThoraxPressures::Weight() const {
-  const Eigen::Vector3d slope = ToEigen(scene_.abdomen().weight());
-  return {{slope.x(), slope.y(), slope.z()}, slope.dot(centre_)};
+LinearField ThoraxPressures::Weight(const v1::Parameters& parameters) const {
+  Eigen::Vector3d slope = ToEigen(scene_.abdomen().weight()), from = centre_;
+  const double weight = slope.norm();
+  switch (parameters.posture()) {
+    case v1::POSTURE_UPRIGHT:
+      slope = -weight * Eigen::Vector3d::UnitZ();
+      from.z() -= scene_.abdomen().upright_level();
+      break;
+    case v1::POSTURE_PRONE:
+      slope = -slope;
+      break;
+    case v1::POSTURE_RIGHT_SIDE:
+      slope = -weight * Eigen::Vector3d::UnitX();
+      break;
+    case v1::POSTURE_LEFT_SIDE:
+      slope = weight * Eigen::Vector3d::UnitX();
+      break;
+    default:
+      break;
+  }
+  return {{slope.x(), slope.y(), slope.z()}, slope.dot(from)};
 }
 
-std::array<double, 2> ThoraxPressures::Cones(const ConstPoints& x, Slopes& slopes, double* f) const {
+const ThoraxPressures::Slopes& ThoraxPressures::SlopesAt(const EvalContext& at) const {
+  Slopes& slopes = at.scratch.Get<Slopes>();
+  const auto x = at.x.middleCols(sheet_.first_vertex, static_cast<Eigen::Index>(sides_.size()));
+  const LinearField weight = Weight(at.parameters);
+  const bool same = slopes.of == this && slopes.x.cols() == x.cols() && slopes.weight == weight &&
+                    std::memcmp(slopes.x.data(), x.data(), sizeof(double) * static_cast<size_t>(x.size())) == 0;
+  if (same) return slopes;
+  SetSlopes(at.x, weight, slopes);
+  slopes.x = x;
+  slopes.weight = weight;
+  slopes.of = this;
+  return slopes;
+}
+
+void ThoraxPressures::SetSlopes(const ConstPoints& x, const LinearField& weight, Slopes& slopes) const {
   slopes.areas.resize(4 * sheet_.triangles());
   slopes.sum.resize(3, static_cast<Eigen::Index>(sides_.size()));
+  slopes.push.resize(3, slopes.sum.cols());
   slopes.left.resize(3, static_cast<Eigen::Index>(midline_.size()));
-  const LinearField weight = Weight();
-  const auto volume = SetAreas(sheet_, x.data(), wall_->apex.data(), weight, slopes.areas.data());
-  GatherAreas(sheet_, slopes.areas.data(), x.data(), weight, slopes.sum.data(), f);
+  slopes.cones = SetAreas(sheet_, x.data(), wall_->apex.data(), weight, slopes.areas.data());
+  GatherAreas(sheet_, slopes.areas.data(), x.data(), weight, slopes.sum.data(), slopes.push.data());
   for (size_t m = 0; m < midline_.size(); ++m) {
     Eigen::Vector3d left = Eigen::Vector3d::Zero();
     for (const std::int32_t at : midline_[m].left) left += Eigen::Map<const Eigen::Vector3d>(&slopes.areas[at]);
@@ -111,7 +150,6 @@ std::array<double, 2> ThoraxPressures::Cones(const ConstPoints& x, Slopes& slope
     const Eigen::Vector3d at = x.col(border[i]) - wall_->apex, along = x.col(before) - x.col(after);
     slopes.sum.col(border[i] - sheet_.first_vertex) += at.cross(along) / 6;
   }
-  return volume;
 }
 
 std::array<double, 2> ThoraxPressures::Swept(const ConstPoints& v, const Slopes& slopes) const {
@@ -165,35 +203,70 @@ double ThoraxPressures::AbdominalSlope(double displaced) const {
   return (1 + 3 * ratio * ratio) / abdomen.compliance();
 }
 
-ThoraxPressures::Sides ThoraxPressures::SidesAt(const EvalContext& at, Slopes& slopes, double* f) const {
+double ThoraxPressures::RecoilEnergy(double volume) const {
+  const double room = scene_.lungs().room() / 2, rate = scene_.lungs().recoil_rate(), least = kLeastRoom * room;
+  const double left = std::max(room - volume, least), beyond = std::max(volume - (room - least), 0.0);
+  const double curve = left * std::log(left / room) + (room - left);
+  return (curve - beyond * std::log(kLeastRoom) + beyond * beyond / (2 * least)) / rate;
+}
+
+double ThoraxPressures::AirwayPressure(const EvalContext& at) const {
+  return at.parameters.airway_pressure() + at.parameters.ventilator_pressure() * std::max(0.0, at.breath);
+}
+
+double ThoraxPressures::AbdominalLoad(const EvalContext& at) const {
+  const v1::Parameters& parameters = at.parameters;
+  const double active = parameters.apply_muscles() ? parameters.expiratory_activation() * at.expiration : 0;
+  return scene_.pleural_pressure() + scene_.transdiaphragmatic_pressure() + parameters.abdominal_load() +
+         scene_.abdomen().expiratory_pressure() * parameters.muscle_strength() * active;
+}
+
+void ThoraxPressures::SetResistances(const v1::Parameters& parameters, Sides& now) const {
+  const v1::LungPair& lungs = scene_.lungs();
+  now.open = {1 - parameters.pneumothorax_right(), 1 - parameters.pneumothorax_left()};
+  const double factor = parameters.airway_resistance();
+  now.common = factor * std::max(0.0, lungs.resistance() - lungs.peripheral_resistance());
+  if (parameters.airway_closed()) now.common = std::max(now.common, kClosedResistance);
+  const double closing = parameters.trapped_air() / 2;
+  for (const size_t h : {kRight, kLeft}) {
+    now.peripheral[h] = factor * lungs.peripheral_resistance();
+    if (now.flow[h] >= 0 || now.volume[h] >= closing) continue;
+    const double closed = std::min(1.0, (closing - now.volume[h]) / (kClosingRange * closing));
+    now.peripheral[h] *= 1 + kMostClosed * closed * closed;
+  }
+}
+
+ThoraxPressures::Sides ThoraxPressures::SidesAt(const EvalContext& at, const Slopes& slopes) const {
   Sides now;
-  const std::array<double, 2> cones = Cones(at.x, slopes, f), swept_of = Swept(at.v, slopes);
+  const std::array<double, 2> swept = Swept(at.v, slopes);
   now.cage = wall_->Position(at);
   const CagePosition rate = wall_->Rate(at);
+  const double fluid[] = {at.parameters.pleural_fluid_right(), at.parameters.pleural_fluid_left()};
   for (const size_t h : {kRight, kLeft}) {
     const CageQuadratic& wall = WallVolume(h);
-    const double swept = swept_of[h];
-    now.volume[h] = wall.At(now.cage) - (cones[h] - rest_cones_[h]) + WithSign(h) * shift_.Value(at.x);
-    now.flow[h] = wall.ByPump(now.cage) * rate.pump + wall.ByBucket(now.cage) * rate.bucket - swept +
+    const double cone = slopes.cones[h] - rest_cones_[h];
+    now.volume[h] = wall.At(now.cage) - cone + WithSign(h) * shift_.Value(at.x) - fluid[h];
+    now.flow[h] = wall.ByPump(now.cage) * rate.pump + wall.ByBucket(now.cage) * rate.bucket - swept[h] +
                   WithSign(h) * shift_.Rate(at.v);
-    now.displaced -= cones[h] - rest_cones_[h];
-    now.displaced_rate -= swept;
+    now.displaced -= cone;
+    now.displaced_rate -= swept[h];
   }
-  const v1::LungPair& lungs = scene_.lungs();
-  const double common = std::max(0.0, lungs.resistance() - lungs.peripheral_resistance());
+  SetResistances(at.parameters, now);
+  const double airway = AirwayPressure(at) - now.common * Flow(now);
   for (const size_t h : {kRight, kLeft}) {
-    now.pleural[h] = scene_.pleural_pressure() - Recoil(now.volume[h]) -
-                     2 * lungs.peripheral_resistance() * now.flow[h] - common * (now.flow[kRight] + now.flow[kLeft]);
+    const double recoil = (scene_.pleural_pressure() - Recoil(now.volume[h])) / at.parameters.lung_compliance();
+    now.pleural[h] = now.open[h] * (recoil - 2 * now.peripheral[h] * now.flow[h] + airway);
   }
-  now.abdominal = scene_.pleural_pressure() + scene_.transdiaphragmatic_pressure() + AbdominalPressure(now.displaced) +
+  now.abdominal = AbdominalLoad(at) + AbdominalPressure(now.displaced) / at.parameters.abdominal_compliance() +
                   scene_.abdomen().resistance() * now.displaced_rate;
   return now;
 }
 
 void ThoraxPressures::AddForce(const EvalContext& at, MutablePoints f) const {
-  Slopes& slopes = at.scratch.Get<Slopes>();
-  const Sides now = SidesAt(at, slopes, f.data());
+  const Slopes& slopes = SlopesAt(at);
+  const Sides now = SidesAt(at, slopes);
   AddSlopes(now.abdominal - now.pleural[kRight], now.abdominal - now.pleural[kLeft], slopes, f);
+  f.middleCols(sheet_.first_vertex, slopes.push.cols()) += slopes.push;
   for (const size_t h : {kRight, kLeft}) {
     const CageQuadratic& wall = WallVolume(h);
     wall_->pump.AddForce(now.pleural[h] * wall.ByPump(now.cage), f);
@@ -216,41 +289,43 @@ void ThoraxPressures::SetVolumeSlopes(double right, double left, const Slopes& s
 }
 
 void ThoraxPressures::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
-  Slopes& slopes = at.scratch.Get<Slopes>();
-  const Sides now = SidesAt(at, slopes, nullptr);
+  const Slopes& slopes = SlopesAt(at);
+  const Sides now = SidesAt(at, slopes);
+  const v1::Parameters& parameters = at.parameters;
   Points g(3, at.x.cols());
-  SetVolumeSlopes(1, 0, slopes, now.cage, g);
-  sink.AddOuter(RecoilSlope(now.volume[kRight]), g);
-  SetVolumeSlopes(0, 1, slopes, now.cage, g);
-  sink.AddOuter(RecoilSlope(now.volume[kLeft]), g);
+  for (const size_t h : {kRight, kLeft}) {
+    SetVolumeSlopes(h == kRight ? 1 : 0, h == kLeft ? 1 : 0, slopes, now.cage, g);
+    sink.AddOuter(now.open[h] * RecoilSlope(now.volume[h]) / parameters.lung_compliance(), g);
+  }
   g.setZero();
   AddSlopes(1, 1, slopes, g);
-  sink.AddOuter(AbdominalSlope(now.displaced), g);
+  sink.AddOuter(AbdominalSlope(now.displaced) / parameters.abdominal_compliance(), g);
   Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
   block(shift_.axis, shift_.axis) = 1 / (scene_.lungs().mediastinal_compliance() * shift_.scale * shift_.scale);
   sink.Add(shift_.vertex, shift_.vertex, block);
 }
 
-// The resistances of both lungs, 2 R_p (v_R'^2 + v_L'^2) + R_c (v_R' + v_L')^2, by the sum of the flows and by their
-// difference.
+// The resistances of both lungs, sum of 2 o_h R_p,h v_h'^2 plus R_c (sum of o_h v_h')^2, as two squares.
 void ThoraxPressures::AddSharedDamping(const EvalContext& at, OuterProducts& shared) const {
   struct Gradient {
     Points g;
   };
-  Slopes& slopes = at.scratch.Get<Slopes>();
+  const Slopes& slopes = SlopesAt(at);
+  const Sides now = SidesAt(at, slopes);
   Points& g = at.scratch.Get<Gradient>().g;
   g.resize(3, at.x.cols());
-  Cones(at.x, slopes, nullptr);
-  const CagePosition k = wall_->Position(at);
-  const double peripheral = scene_.lungs().peripheral_resistance();
-  const double common = std::max(0.0, scene_.lungs().resistance() - peripheral);
-  if (peripheral + common > 0) {
-    SetVolumeSlopes(1, 1, slopes, k, g);
-    shared.Add(peripheral + common, g);
+  const auto own = [&](size_t h) {
+    return 2 * now.open[h] * now.peripheral[h] + now.common * now.open[h] * now.open[h];
+  };
+  const double right = own(kRight), both = now.common * now.open[kRight] * now.open[kLeft];
+  if (right > 0) {
+    SetVolumeSlopes(1, both / right, slopes, now.cage, g);
+    shared.Add(right, g);
   }
-  if (peripheral > 0) {
-    SetVolumeSlopes(1, -1, slopes, k, g);
-    shared.Add(peripheral, g);
+  const double left = own(kLeft) - (right > 0 ? both * both / right : 0);
+  if (left > 0) {
+    SetVolumeSlopes(0, 1, slopes, now.cage, g);
+    shared.Add(left, g);
   }
   if (scene_.abdomen().resistance() <= 0) return;
   g.setZero();
@@ -259,32 +334,33 @@ void ThoraxPressures::AddSharedDamping(const EvalContext& at, OuterProducts& sha
 }
 
 double ThoraxPressures::Energy(const EvalContext& at) const {
-  Slopes& slopes = at.scratch.Get<Slopes>();
-  const Sides now = SidesAt(at, slopes, nullptr);
-  const double room = scene_.lungs().room() / 2, shift = shift_.Value(at.x);
+  const Sides now = SidesAt(at, SlopesAt(at));
+  const double shift = shift_.Value(at.x), airway = AirwayPressure(at);
   double energy = shift * shift / (2 * scene_.lungs().mediastinal_compliance());
-  for (const double volume : now.volume) {
-    const double left = std::max(room - volume, kLeastRoom * room);
-    energy += (left * std::log(left / room) + (room - left)) / scene_.lungs().recoil_rate();
-    energy -= scene_.pleural_pressure() * volume;
+  for (const size_t h : {kRight, kLeft}) {
+    const double recoil = RecoilEnergy(now.volume[h]) - scene_.pleural_pressure() * now.volume[h];
+    energy += now.open[h] * (recoil / at.parameters.lung_compliance() - airway * now.volume[h]);
   }
   const double v = now.displaced;
   const double ratio = v / (v > 0 ? scene_.abdomen().stiffening_volume_out() : scene_.abdomen().stiffening_volume_in());
-  energy += v * v / (2 * scene_.abdomen().compliance()) * (1 + ratio * ratio / 2);
-  return energy + (scene_.pleural_pressure() + scene_.transdiaphragmatic_pressure()) * v + EnergyOfWeight(at.x);
+  const double compliance = scene_.abdomen().compliance() * at.parameters.abdominal_compliance();
+  energy += v * v / (2 * compliance) * (1 + ratio * ratio / 2);
+  return energy + AbdominalLoad(at) * v + EnergyOfWeight(at);
 }
 
 // The integral of the weight's pressure over the cones, with its sign reversed.
-double ThoraxPressures::EnergyOfWeight(const ConstPoints& x) const {
-  const Eigen::Vector3d slope = ToEigen(scene_.abdomen().weight());
+double ThoraxPressures::EnergyOfWeight(const EvalContext& at) const {
+  const LinearField weight = Weight(at.parameters);
+  const Eigen::Map<const Eigen::Vector3d> slope(weight.slope);
   if (slope.isZero()) return 0;
+  const ConstPoints& x = at.x;
   double energy = 0;
   for (const auto& packets : sheet_.packets) {
     for (const TrianglePacket& packet : packets) {
       for (int lane = 0; lane < kPacketTriangles; ++lane) {
         const Eigen::Vector3d a = x.col(packet.a[lane] / 3), b = x.col(packet.b[lane] / 3), c = x.col(packet.c[lane] / 3);
         const double cone = (a - wall_->apex).dot((b - a).cross(c - a)) / 6;
-        energy -= cone * slope.dot((wall_->apex + a + b + c) / 4 - centre_);
+        energy -= cone * (slope.dot(wall_->apex + a + b + c) / 4 - weight.offset);
       }
     }
   }
@@ -294,15 +370,19 @@ double ThoraxPressures::EnergyOfWeight(const ConstPoints& x) const {
 std::span<const Force::Output> ThoraxPressures::outputs() const { return kThoraxOutputs; }
 
 double ThoraxPressures::Read(size_t output, const EvalContext& at) const {
-  Slopes& slopes = at.scratch.Get<Slopes>();
-  const Sides now = SidesAt(at, slopes, nullptr);
-  const v1::LungPair& lungs = scene_.lungs();
-  const double flow = now.flow[kRight] + now.flow[kLeft], pleural = (now.pleural[kRight] + now.pleural[kLeft]) / 2;
+  const Sides now = SidesAt(at, SlopesAt(at));
+  const double pleural = (now.pleural[kRight] + now.pleural[kLeft]) / 2;
+  const double collapsed = kCollapsed * scene_.lungs().rest_volume() / 2;
+  double volume = 0;
   switch (output) {
     case 0:
-      return lungs.rest_volume() + now.volume[kRight] + now.volume[kLeft];
+      for (const size_t h : {kRight, kLeft}) {
+        const double aerated = scene_.lungs().rest_volume() / 2 + now.volume[h];
+        volume += now.open[h] * aerated + (1 - now.open[h]) * collapsed;
+      }
+      return volume;
     case 1:
-      return flow;
+      return Flow(now);
     case 2:
       return now.pleural[kRight];
     case 3:
@@ -312,7 +392,8 @@ double ThoraxPressures::Read(size_t output, const EvalContext& at) const {
     case 5:
       return now.abdominal - pleural;
     case 6:
-      return -lungs.resistance() * flow;
+      return AirwayPressure(at) - now.common * Flow(now) - (now.peripheral[kRight] * now.flow[kRight] +
+                                                            now.peripheral[kLeft] * now.flow[kLeft]);
     default:
       return now.displaced;
   }

@@ -4,11 +4,16 @@
 // the wall (motions/insertion.h), S_h the cones from the wall's apex over the side's triangles, and s the volume that the
 // mediastinum has moved from the left side to the right, a coordinate. Gas and tissue are incompressible, so that v_h' is
 // the flow into the lung. With r_h = r/2 the room of one lung
-//   p_pleural,h = p_0 - ln(r_h/(r_h - v_h))/e - R_p 2 v_h' - R_c (v_right' + v_left') + p_airway  [Pa],
-// R_p the peripheral resistance of both lungs side by side and R_c = R - R_p that of the common airway. Of the abdomen,
-// with v = S_0 - S the volume that the diaphragm displaces,
-//   p_abdomen = p_0 + p_di + v/C (1 + (v/V)^2) + R_a v' + w . (x - x_mean),
-// w the gradient by the weight of its contents. The forces are those of virtual work:
+//   p_pleural,h = o_h [(p_0 - ln(r_h/(r_h - v_h + u_h))/e)/c - 2 R_p,h v_h' - R_c (o_right v_right' + o_left v_left')
+//                      + p_airway]  [Pa],
+// R_p the peripheral resistance of both lungs side by side, R_c = R - R_p that of the common airway, and by the live
+// parameters c the lung_compliance, u_h the pleural_fluid and o_h = 1 - pneumothorax of the side; airway_resistance
+// multiplies R, which is that of a closed airway with airway_closed; below half of trapped_air the airways of a lung
+// close in expiration: R_p,h grows a thousandfold. p_airway is airway_pressure, plus ventilator_pressure times the signal.
+// Of the abdomen, with v = S_0 - S the volume that the diaphragm displaces,
+//   p_abdomen = p_0 + p_di + v/(C c_a) (1 + (v/V)^2) + R_a v' + p_load + P_e a_e + w . (x - x_0),
+// c_a the abdominal_compliance, p_load the abdominal_load, a_e the activation of the expiratory muscles and w the
+// gradient by the weight of its contents, whose direction is that of the posture. The forces are those of virtual work:
 //   f_i = sum_h (p_abdomen - p_pleural,h) dS_h/dx_i,  Q_k = sum_h p_pleural,h dW_h/dk,
 //   Q_s = p_pleural,right - p_pleural,left - s/C_m - c M_m s'.
 // Inside the sheet dS_h/dx_i is the area vector of the side's triangles; where the sides meet the cones' common face
@@ -53,12 +58,21 @@ class ThoraxPressures final : public Force {
     std::array<double, 2> volume = {}, flow = {}, pleural = {};  // [m^3], [m^3/s], [Pa]
     double displaced = 0, displaced_rate = 0, abdominal = 0;     // [m^3], [m^3/s], [Pa]
     CagePosition cage;
+    // 1 minus the pneumothorax; and the resistances R_p,h of each lung and R_c of both [Pa s/m^3].
+    std::array<double, 2> open = {1, 1}, peripheral = {};
+    double common = 0;
   };
   // The derivatives of the cones by the sheet's vertices [m^2]: a vertex is of one side, or of both on the midline.
   struct Slopes {
     Points sum;   // dS/dx, 3 x the sheet's vertices
     Points left;  // dS_left/dx of the midline's vertices
+    Points push;  // force of the weight [N], 3 x the sheet's vertices
     std::vector<double> areas;
+    std::array<double, 2> cones = {};  // S_h [m^3]
+    // What they were made of: they are made again if that changes.
+    const ThoraxPressures* of = nullptr;
+    Points x;
+    LinearField weight;
   };
   struct MidlineVertex {
     int vertex;                      // of the sheet
@@ -68,19 +82,29 @@ class ThoraxPressures final : public Force {
       : Force(std::move(name)), scene_(scene), wall_(std::move(wall)) {}
   void AddSheet(const BodyModel& body, const Model& model);
   void AddVertices(const std::vector<std::array<std::vector<std::int32_t>, 2>>& around);
-  double EnergyOfWeight(const ConstPoints& x) const;
-  LinearField Weight() const;
-  // Sets the slopes, adds the force of the weight to f unless it is null, and returns S of each side [m^3].
-  std::array<double, 2> Cones(const ConstPoints& x, Slopes& slopes, double* f) const;
+  double RecoilEnergy(double volume) const;  // [J]
+  double EnergyOfWeight(const EvalContext& at) const;
+  LinearField Weight(const v1::Parameters& parameters) const;
+  // Returns the slopes and cones at a moment, valid until the next call with the same scratch memory.
+  const Slopes& SlopesAt(const EvalContext& at) const;
+  void SetSlopes(const ConstPoints& x, const LinearField& weight, Slopes& slopes) const;
   // Returns dS_h/dt of each side [m^3/s].
   std::array<double, 2> Swept(const ConstPoints& v, const Slopes& slopes) const;
   // Adds right dS_right/dx + left dS_left/dx to g, 3 x simulated vertices.
   void AddSlopes(double right, double left, const Slopes& slopes, MutablePoints g) const;
-  Sides SidesAt(const EvalContext& at, Slopes& slopes, double* f) const;
+  Sides SidesAt(const EvalContext& at, const Slopes& slopes) const;
+  void SetResistances(const v1::Parameters& parameters, Sides& now) const;
+  double AirwayPressure(const EvalContext& at) const;
+  // The part of the abdominal pressure that does not depend on its volume.
+  double AbdominalLoad(const EvalContext& at) const;
   double Recoil(double volume) const;       // of one lung [Pa]
   double RecoilSlope(double volume) const;  // [Pa/m^3]
   double AbdominalPressure(double displaced) const;
   double AbdominalSlope(double displaced) const;
+  // The flow at the mouth [m^3/s].
+  static double Flow(const Sides& now) {
+    return now.open[kRight] * now.flow[kRight] + now.open[kLeft] * now.flow[kLeft];
+  }
   const CageQuadratic& WallVolume(size_t side) const {
     return side == kRight ? wall_->volumes.right : wall_->volumes.left;
   }

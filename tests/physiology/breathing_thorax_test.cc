@@ -1,0 +1,199 @@
+// The thorax that its muscles move: each effect goes when its cause is taken away.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "server/mechanics/skinning/body_points.h"
+#include "server/mechanics/step/step.h"
+#include "tests/anatomy/crossings.h"
+#include "tests/physiology/generated_thorax.h"
+
+namespace phrenic {
+namespace {
+
+constexpr double kSample = 0.05;  // [s]
+constexpr double kLitre = 1e-3;   // [m^3]
+
+// The measures of a run, each at every sample.
+struct Curves {
+  std::map<std::string, std::vector<double>> of;
+  State last;
+
+  // The last breath of `seconds`.
+  std::vector<double> Last(const std::string& name, double seconds) const {
+    const std::vector<double>& all = of.at(name);
+    return {all.end() - static_cast<std::ptrdiff_t>(std::lround(seconds / kSample)), all.end()};
+  }
+  double Range(const std::string& name, double seconds) const {
+    const auto last = Last(name, seconds);
+    const auto [low, high] = std::minmax_element(last.begin(), last.end());
+    return *high - *low;
+  }
+  double Least(const std::string& name, double seconds) const {
+    const auto last = Last(name, seconds);
+    return *std::min_element(last.begin(), last.end());
+  }
+};
+
+class BreathingThorax : public GeneratedThorax {
+ protected:
+  static void SetUpTestSuite() { model_ = CompileShipped("thorax-muscle"); }
+
+  static Curves Run(const v1::Parameters& parameters, double seconds) {
+    Curves curves;
+    State& state = curves.last = model_->InitialState();
+    Workspace work = model_->MakeWorkspace();
+    double next = 0;
+    while (state.time < seconds) {
+      if (state.time >= next) {
+        const EvalContext at = MakeEvalContext(*model_, parameters, state, work.scratch);
+        for (const auto& measure : model_->measures) curves.of[measure->name()].push_back(measure->Value(at));
+        next += kSample;
+      }
+      const absl::Status status = Step(*model_, parameters, parameters.time_step(), state, work);
+      EXPECT_TRUE(status.ok()) << status << " at " << state.time;
+      if (!status.ok()) break;
+    }
+    return curves;
+  }
+  // Of the second breath of a preset, changed.
+  template <typename Change>
+  static Curves Breathe(const std::string& preset, const Change& change) {
+    v1::Parameters parameters = With(preset);
+    change(parameters);
+    return Run(parameters, 2 * parameters.breath_length());
+  }
+  static Curves Breathe(const std::string& preset) {
+    return Breathe(preset, [](v1::Parameters&) {});
+  }
+  static double TidalVolume(const Curves& curves) { return curves.Range("lung volume", 4); }
+
+  static const Curves& Quiet() {
+    static const Curves& curves = *new Curves(Breathe("quiet"));
+    return curves;
+  }
+};
+
+TEST_F(BreathingThorax, WithoutDriveNothingMoves) {
+  v1::Parameters parameters = With("quiet");
+  parameters.set_diaphragm_activation(0);
+  parameters.set_intercostal_activation(0);
+  const Curves curves = Run(parameters, 10);
+  const Eigen::Index vertices = model_->rest.cols() - 1;  // the last one holds coordinates
+  EXPECT_LT((curves.last.x - model_->rest).leftCols(vertices).colwise().norm().maxCoeff(), 1e-4);
+  EXPECT_LT(curves.Range("lung volume", 10), 1e-6);
+}
+
+TEST_F(BreathingThorax, QuietBreathIsThatOfAPerson) {
+  const Curves& quiet = Quiet();
+  EXPECT_GT(TidalVolume(quiet), 0.4 * kLitre);
+  EXPECT_LT(TidalVolume(quiet), 0.7 * kLitre);
+  const double share = quiet.Range("displaced by the abdomen", 4) / TidalVolume(quiet);
+  EXPECT_GT(share, 0.52);
+  EXPECT_LT(share, 0.75);
+  EXPECT_GT(quiet.Range("transdiaphragmatic pressure", 4), 392);
+  EXPECT_LT(quiet.Range("transdiaphragmatic pressure", 4), 1471);
+}
+
+TEST_F(BreathingThorax, VolumeIsTheFlowIntegrated) {
+  const auto& volume = Quiet().of.at("lung volume");
+  const auto& flow = Quiet().of.at("flow");
+  double integrated = volume.front(), worst = 0;
+  for (size_t i = 1; i < volume.size(); ++i) {
+    integrated += kSample * (flow[i - 1] + flow[i]) / 2;
+    worst = std::max(worst, std::abs(integrated - volume[i]));
+  }
+  EXPECT_LT(worst, 0.01 * TidalVolume(Quiet()));
+}
+
+TEST_F(BreathingThorax, StiffLungsTakeLessAir) {
+  const double stiff = TidalVolume(Breathe("quiet", [](v1::Parameters& p) { p.set_lung_compliance(0.25); }));
+  EXPECT_GT(1 - stiff / TidalVolume(Quiet()), 0.25);
+  EXPECT_LT(1 - stiff / TidalVolume(Quiet()), 0.6);
+}
+
+TEST_F(BreathingThorax, NarrowAirwaysMakeTheVolumeLag) {
+  const Curves narrow = Breathe("quiet", [](v1::Parameters& p) { p.set_airway_resistance(10); });
+  EXPECT_LT(TidalVolume(narrow), 0.8 * TidalVolume(Quiet()));
+  const auto peak = [](const Curves& curves) {
+    const auto last = curves.Last("lung volume", 4);
+    return std::max_element(last.begin(), last.end()) - last.begin();
+  };
+  EXPECT_GT(peak(narrow), peak(Quiet()) + 2);
+}
+
+TEST_F(BreathingThorax, AStiffAbdomenLeavesMoreToTheRibs) {
+  const Curves stiff = Breathe("quiet", [](v1::Parameters& p) { p.set_abdominal_compliance(0.3); });
+  const auto share = [](const Curves& curves) {
+    return curves.Range("displaced by the abdomen", 4) / TidalVolume(curves);
+  };
+  EXPECT_LT(share(stiff), share(Quiet()) - 0.1);
+}
+
+TEST_F(BreathingThorax, AStiffCageLeavesMoreToTheAbdomen) {
+  const Curves stiff = Breathe("quiet", [](v1::Parameters& p) {
+    p.set_chest_wall_compliance(0.2);
+    p.set_intercostal_activation(0);
+  });
+  const Curves soft = Breathe("quiet", [](v1::Parameters& p) { p.set_intercostal_activation(0); });
+  EXPECT_LT(stiff.Range("bucket handle", 4), 0.6 * soft.Range("bucket handle", 4));
+}
+
+TEST_F(BreathingThorax, ClosedAirwayLetsNoAirIn) {
+  const Curves mueller = Breathe("mueller");
+  EXPECT_LT(TidalVolume(mueller), 0.05 * kLitre);
+  EXPECT_LT(mueller.Least("pleural pressure", 4), Quiet().Least("pleural pressure", 4) - 500);
+}
+
+TEST_F(BreathingThorax, AVentilatorMovesRelaxedDomesDown) {
+  const Curves ventilated = Breathe("ventilator");
+  EXPECT_GT(TidalVolume(ventilated), 0.5 * kLitre);
+  EXPECT_LT(TidalVolume(ventilated), 1.1 * kLitre);
+  EXPECT_LT(ventilated.Least("right dome", 4), -0.003);
+}
+
+TEST_F(BreathingThorax, AParalysedDomeIsDrawnUp) {
+  const Curves both = Breathe("palsy-both");
+  const auto top = both.Last("right dome", 4);
+  EXPECT_GT(*std::max_element(top.begin(), top.end()), 0.001) << "the ribs' suction";
+  const auto displaced = both.Last("displaced by the abdomen", 4);
+  EXPECT_LT(*std::min_element(displaced.begin(), displaced.end()), -0.02 * kLitre);
+}
+
+TEST_F(BreathingThorax, UprightLungsRestFuller) {
+  v1::Parameters parameters = With("breath-hold");
+  const double supine = Run(parameters, 4).of.at("lung volume").back();
+  parameters.set_posture(v1::POSTURE_UPRIGHT);
+  const double upright = Run(parameters, 4).of.at("lung volume").back();
+  EXPECT_GT(upright - supine, 0.4 * kLitre);
+  EXPECT_LT(upright - supine, 1.0 * kLitre);
+}
+
+TEST_F(BreathingThorax, NoLayerCrossesItselfInAnyBreath) {
+  int seen = -1;
+  for (size_t b = 0; b < model_->bodies.size(); ++b) {
+    if (model_->bodies[b].name == "diaphragm") seen = static_cast<int>(b);
+  }
+  ASSERT_GE(seen, 0);
+  for (const std::string preset : {"quiet", "deep", "sniff", "palsy-right", "pneumothorax-right", "ventilator"}) {
+    v1::Parameters parameters = With(preset);
+    Mesh sheet = model_->bodies[static_cast<size_t>(seen)].mesh;
+    for (const double phase : {0.25, 0.5, 0.75}) {
+      const State state = Run(parameters, phase * parameters.breath_length()).last;
+      PlaceBody(*model_, state, seen, sheet.vertices);
+      EXPECT_EQ(anatomy::SelfCrossings(sheet, 0.004), 0) << preset << " at " << phase;
+    }
+  }
+}
+
+TEST_F(BreathingThorax, RunsRepeatBitForBit) {
+  const v1::Parameters parameters = With("deep");
+  EXPECT_EQ(StateHash(Run(parameters, 0.5).last), StateHash(Run(parameters, 0.5).last));
+}
+
+}  // namespace
+}  // namespace phrenic
