@@ -56,6 +56,7 @@ void PrintReport(const v1::DescribeSceneResponse& response) {
   if (response.scene().presets_size() > 0) std::cout << "\nPresets\n";
   for (const v1::Preset& preset : response.scene().presets()) {
     std::cout << absl::StrFormat("%s (%s): %s\n", preset.name(), preset.title(), ParametersLine(preset.parameters()));
+    if (!preset.description().empty()) std::cout << "  " << preset.description() << "\n";
   }
   std::cout << "\nParameters\n" << ParametersLine(response.parameters()) << "\n";
   if (report.idle_parameters_size() > 0) {

@@ -21,7 +21,8 @@ constexpr std::array<Force::Output, 8> kThoraxOutputs = {{{"volume", "m^3"},
                                                             {"displaced_volume", "m^3"}}};
 constexpr double kLeastRoom = 0.02;  // of a lung's room: the curve continues along its tangent below
 
-constexpr double kClosedResistance = 1.5e10;  // of a closed airway: some millilitres a minute leak [Pa s/m^3]
+constexpr double kActivationTime = 0.1;       // of the expiratory muscles [s]
+constexpr double kAtmosphere = 101325;        // [Pa]
 constexpr double kClosingRange = 0.3;         // of the closing volume, over which the airways of a lung close
 constexpr double kMostClosed = 1000;          // the resistance of closed airways over that of open ones
 constexpr double kCollapsed = 0.3;            // volume of a collapsed lung, of that at rest
@@ -45,6 +46,8 @@ absl::StatusOr<std::unique_ptr<Force>> ThoraxPressures::Make(const v1::ThoraxPre
   force->shift_ = builder.AddCoordinate("mediastinal shift", "m^3", lungs.mediastinal_inertia());
   force->shift_damping_ = lungs.mediastinal_damping_rate() * lungs.mediastinal_inertia();
   force->AddSheet(builder.model.bodies[body->front()], builder.model);
+  force->first_scalar_ = builder.AddInternalScalars(force->name() + ":closed-airway", "m^3", 2);
+  force->expiration_ = builder.AddInternalScalars(force->name() + ":expiration", "1", 1);
   builder.ReportElement(
       "force", force->name(), builder.model.bodies[body->front()].mesh.triangles.cols(), "triangles",
       absl::StrFormat("lungs %g Pa s/m^3, abdomen %g m^3/Pa", lungs.resistance(), scene.abdomen().compliance()));
@@ -210,15 +213,35 @@ double ThoraxPressures::RecoilEnergy(double volume) const {
   return (curve - beyond * std::log(kLeastRoom) + beyond * beyond / (2 * least)) / rate;
 }
 
-double ThoraxPressures::AirwayPressure(const EvalContext& at) const {
+double ThoraxPressures::GasElastance(const v1::Parameters& parameters) const {
+  return parameters.airway_closed() ? kAtmosphere / scene_.lungs().rest_volume() : 0;
+}
+
+double ThoraxPressures::GasPressure(const EvalContext& at, const Sides& now) const {
+  const double elastance = GasElastance(at.parameters);
+  if (elastance == 0 || at.scalars.q[first_scalar_] == 0) return 0;  // it closes in this step
+  return -elastance * (Volume(now) - at.scalars.q[first_scalar_ + 1]);
+}
+
+void ThoraxPressures::AdvanceScalars(const EvalContext& end, std::int64_t, double dt, ScalarState& scalars) const {
+  const v1::Parameters& parameters = end.parameters;
+  const double drive = parameters.apply_muscles() ? parameters.expiratory_activation() * end.expiration : 0;
+  scalars.q[expiration_] += dt / (kActivationTime + dt) * (drive - scalars.q[expiration_]);
+  double &closed = scalars.q[first_scalar_], &volume = scalars.q[first_scalar_ + 1];
+  if (end.parameters.airway_closed() && closed == 0) volume = Volume(SidesAt(end, SlopesAt(end)));
+  closed = end.parameters.airway_closed() ? 1 : 0;
+  if (closed == 0) volume = 0;
+}
+
+double ThoraxPressures::AirwayPressure(const EvalContext& at, const Sides& now) const {
+  if (at.parameters.airway_closed()) return GasPressure(at, now);
   return at.parameters.airway_pressure() + at.parameters.ventilator_pressure() * std::max(0.0, at.breath);
 }
 
 double ThoraxPressures::AbdominalLoad(const EvalContext& at) const {
   const v1::Parameters& parameters = at.parameters;
-  const double active = parameters.apply_muscles() ? parameters.expiratory_activation() * at.expiration : 0;
   return scene_.pleural_pressure() + scene_.transdiaphragmatic_pressure() + parameters.abdominal_load() +
-         scene_.abdomen().expiratory_pressure() * parameters.muscle_strength() * active;
+         scene_.abdomen().expiratory_pressure() * parameters.muscle_strength() * at.scalars.q[expiration_];
 }
 
 void ThoraxPressures::SetResistances(const v1::Parameters& parameters, Sides& now) const {
@@ -226,7 +249,7 @@ void ThoraxPressures::SetResistances(const v1::Parameters& parameters, Sides& no
   now.open = {1 - parameters.pneumothorax_right(), 1 - parameters.pneumothorax_left()};
   const double factor = parameters.airway_resistance();
   now.common = factor * std::max(0.0, lungs.resistance() - lungs.peripheral_resistance());
-  if (parameters.airway_closed()) now.common = std::max(now.common, kClosedResistance);
+  if (parameters.airway_closed()) now.common = 0;
   const double closing = parameters.trapped_air() / 2;
   for (const size_t h : {kRight, kLeft}) {
     now.peripheral[h] = factor * lungs.peripheral_resistance();
@@ -252,7 +275,7 @@ ThoraxPressures::Sides ThoraxPressures::SidesAt(const EvalContext& at, const Slo
     now.displaced_rate -= swept[h];
   }
   SetResistances(at.parameters, now);
-  const double airway = AirwayPressure(at) - now.common * Flow(now);
+  const double airway = AirwayPressure(at, now) - now.common * Flow(now);
   for (const size_t h : {kRight, kLeft}) {
     const double recoil = (scene_.pleural_pressure() - Recoil(now.volume[h])) / at.parameters.lung_compliance();
     now.pleural[h] = now.open[h] * (recoil - 2 * now.peripheral[h] * now.flow[h] + airway);
@@ -299,6 +322,12 @@ void ThoraxPressures::AddStiffness(const EvalContext& at, StiffnessSink& sink) c
   }
   g.setZero();
   AddSlopes(1, 1, slopes, g);
+  if (const double elastance = GasElastance(parameters); elastance > 0) {
+    SetVolumeSlopes(now.open[kRight], now.open[kLeft], slopes, now.cage, g);
+    sink.AddOuter(elastance, g);
+    g.setZero();
+    AddSlopes(1, 1, slopes, g);
+  }
   sink.AddOuter(AbdominalSlope(now.displaced) / parameters.abdominal_compliance(), g);
   Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
   block(shift_.axis, shift_.axis) = 1 / (scene_.lungs().mediastinal_compliance() * shift_.scale * shift_.scale);
@@ -333,14 +362,21 @@ void ThoraxPressures::AddSharedDamping(const EvalContext& at, OuterProducts& sha
   shared.Add(scene_.abdomen().resistance(), g);
 }
 
+double ThoraxPressures::EnergyOfGas(const EvalContext& at, const Sides& now) const {
+  if (!at.parameters.airway_closed()) return -AirwayPressure(at, now) * Volume(now);
+  const double pressure = GasPressure(at, now);
+  return pressure * pressure / (2 * GasElastance(at.parameters));
+}
+
 double ThoraxPressures::Energy(const EvalContext& at) const {
   const Sides now = SidesAt(at, SlopesAt(at));
-  const double shift = shift_.Value(at.x), airway = AirwayPressure(at);
+  const double shift = shift_.Value(at.x);
   double energy = shift * shift / (2 * scene_.lungs().mediastinal_compliance());
   for (const size_t h : {kRight, kLeft}) {
     const double recoil = RecoilEnergy(now.volume[h]) - scene_.pleural_pressure() * now.volume[h];
-    energy += now.open[h] * (recoil / at.parameters.lung_compliance() - airway * now.volume[h]);
+    energy += now.open[h] * recoil / at.parameters.lung_compliance();
   }
+  energy += EnergyOfGas(at, now);
   const double v = now.displaced;
   const double ratio = v / (v > 0 ? scene_.abdomen().stiffening_volume_out() : scene_.abdomen().stiffening_volume_in());
   const double compliance = scene_.abdomen().compliance() * at.parameters.abdominal_compliance();
@@ -392,7 +428,7 @@ double ThoraxPressures::Read(size_t output, const EvalContext& at) const {
     case 5:
       return now.abdominal - pleural;
     case 6:
-      return AirwayPressure(at) - now.common * Flow(now) - (now.peripheral[kRight] * now.flow[kRight] +
+      return AirwayPressure(at, now) - now.common * Flow(now) - (now.peripheral[kRight] * now.flow[kRight] +
                                                             now.peripheral[kLeft] * now.flow[kLeft]);
     default:
       return now.displaced;

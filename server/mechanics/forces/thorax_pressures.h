@@ -5,11 +5,13 @@
 // mediastinum has moved from the left side to the right, a coordinate. Gas and tissue are incompressible, so that v_h' is
 // the flow into the lung. With r_h = r/2 the room of one lung
 //   p_pleural,h = o_h [(p_0 - ln(r_h/(r_h - v_h + u_h))/e)/c - 2 R_p,h v_h' - R_c (o_right v_right' + o_left v_left')
-//                      + p_airway]  [Pa],
+//                      + p_airway - b (o_right v_right + o_left v_left - v_closed)]  [Pa],
 // R_p the peripheral resistance of both lungs side by side, R_c = R - R_p that of the common airway, and by the live
 // parameters c the lung_compliance, u_h the pleural_fluid and o_h = 1 - pneumothorax of the side; airway_resistance
-// multiplies R, which is that of a closed airway with airway_closed; below half of trapped_air the airways of a lung
-// close in expiration: R_p,h grows a thousandfold. p_airway is airway_pressure, plus ventilator_pressure times the signal.
+// multiplies R. With airway_closed the gas that the lungs had when it closed, v_closed, is compressed by Boyle's law: b is
+// the atmospheric pressure over their volume, 0 while it is open, and R_c is 0 then. Below half of trapped_air the airways
+// of a lung close in expiration: R_p,h grows a thousandfold. p_airway is airway_pressure, plus ventilator_pressure times
+// the signal; 0 when closed.
 // Of the abdomen, with v = S_0 - S the volume that the diaphragm displaces,
 //   p_abdomen = p_0 + p_di + v/(C c_a) (1 + (v/V)^2) + R_a v' + p_load + P_e a_e + w . (x - x_0),
 // c_a the abdominal_compliance, p_load the abdominal_load, a_e the activation of the expiratory muscles and w the
@@ -45,6 +47,9 @@ class ThoraxPressures final : public Force {
   void AddStiffness(const EvalContext& at, StiffnessSink& sink) const override;
   bool has_shared_damping() const override { return true; }
   void AddSharedDamping(const EvalContext& at, OuterProducts& shared) const override;
+  // Notes the volume of the lungs when their airway closes; the expiratory muscles follow their drive within 0.1 s.
+  void AdvanceScalars(const EvalContext& end, std::int64_t tick, double dt, ScalarState& scalars) const override;
+  bool advances_scalars() const override { return true; }
   double Energy(const EvalContext& at) const override;
   // Volume of both lungs, flow into them; pleural pressure, right and left; abdominal, transdiaphragmatic and alveolar
   // pressure; volume displaced by the abdominal wall.
@@ -84,6 +89,7 @@ class ThoraxPressures final : public Force {
   void AddVertices(const std::vector<std::array<std::vector<std::int32_t>, 2>>& around);
   double RecoilEnergy(double volume) const;  // [J]
   double EnergyOfWeight(const EvalContext& at) const;
+  double EnergyOfGas(const EvalContext& at, const Sides& now) const;
   LinearField Weight(const v1::Parameters& parameters) const;
   // Returns the slopes and cones at a moment, valid until the next call with the same scratch memory.
   const Slopes& SlopesAt(const EvalContext& at) const;
@@ -94,13 +100,20 @@ class ThoraxPressures final : public Force {
   void AddSlopes(double right, double left, const Slopes& slopes, MutablePoints g) const;
   Sides SidesAt(const EvalContext& at, const Slopes& slopes) const;
   void SetResistances(const v1::Parameters& parameters, Sides& now) const;
-  double AirwayPressure(const EvalContext& at) const;
+  double AirwayPressure(const EvalContext& at, const Sides& now) const;
+  // The pressure of the gas behind a closed airway, and its elastance [Pa/m^3]; 0 if it is open.
+  double GasPressure(const EvalContext& at, const Sides& now) const;
+  double GasElastance(const v1::Parameters& parameters) const;
   // The part of the abdominal pressure that does not depend on its volume.
   double AbdominalLoad(const EvalContext& at) const;
   double Recoil(double volume) const;       // of one lung [Pa]
   double RecoilSlope(double volume) const;  // [Pa/m^3]
   double AbdominalPressure(double displaced) const;
   double AbdominalSlope(double displaced) const;
+  // The change of the volume of the lungs that the airway leads to [m^3].
+  static double Volume(const Sides& now) {
+    return now.open[kRight] * now.volume[kRight] + now.open[kLeft] * now.volume[kLeft];
+  }
   // The flow at the mouth [m^3/s].
   static double Flow(const Sides& now) {
     return now.open[kRight] * now.flow[kRight] + now.open[kLeft] * now.flow[kLeft];
@@ -115,6 +128,8 @@ class ThoraxPressures final : public Force {
   const std::shared_ptr<const CageWall> wall_;
   Coordinate shift_;  // of the mediastinum, to the left [m^3]
   double shift_damping_ = 0;
+  int expiration_ = 0;    // in State::scalars: activation of the expiratory muscles
+  int first_scalar_ = 0;  // in State::scalars: 1 if the airway is closed, and the volume change at which it closed
   SheetLayout sheet_;
   std::vector<std::uint8_t> sides_;       // of each vertex of the sheet; kRight on the midline
   std::vector<MidlineVertex> midline_;
