@@ -253,7 +253,7 @@ void ThoraxPressures::SetResistances(const v1::Parameters& parameters, Sides& no
   const double closing = parameters.trapped_air() / 2;
   for (const size_t h : {kRight, kLeft}) {
     now.peripheral[h] = factor * lungs.peripheral_resistance();
-    if (now.flow[h] >= 0 || now.volume[h] >= closing) continue;
+    if (closing <= 0 || now.flow[h] >= 0 || now.volume[h] >= closing) continue;
     const double closed = std::min(1.0, (closing - now.volume[h]) / (kClosingRange * closing));
     now.peripheral[h] *= 1 + kMostClosed * closed * closed;
   }
