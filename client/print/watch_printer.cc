@@ -82,6 +82,9 @@ class LinePrinter final : public WatchPrinter {
       return;
     }
     const v1::Session& session = event.session();
+    if (std::exchange(warned_, session.warnings_size() > 0) != warned_) {
+      std::cerr << WarningLines(session.warnings(), "phrenic: ");
+    }
     residual_ = SolverText(session, "  solver: ", "") + ResidualText(session, "  constraints within ", "");
     if (session.revision() == revision_) return;
     revision_ = session.revision();
@@ -90,6 +93,7 @@ class LinePrinter final : public WatchPrinter {
 
  private:
   std::int64_t revision_ = -1;
+  bool warned_ = false;
   std::string residual_;  // at most about a second old
 };
 

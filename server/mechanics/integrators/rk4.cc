@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "server/mechanics/solve/link_forces.h"
 #include "server/mechanics/step/step_plan.h"
 
 namespace phrenic {
@@ -45,6 +46,7 @@ absl::Status Rk4::Advance(const StepPlan& plan, const v1::Parameters& parameters
   for (const Stage& stage : kStages) {
     if (stage.at > 0) MoveBy(plan, parameters, stage.at * dt, velocity, acceleration, work, state);
     plan.SumForces(plan.ContextAhead(parameters, stage.at * dt, state, work.scratch), work.force);
+    AddLinkForces(plan, parameters, stage.at * dt, state, work.scratch, work.force);
     velocity = state.v;
     acceleration = work.force * plan.model().inverse_mass.asDiagonal();
     velocities += stage.weight * velocity;

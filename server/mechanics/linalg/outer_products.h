@@ -19,6 +19,11 @@ class OuterProducts {
   // Adds a term. Requires: scale >= 0.
   void Add(double scale, const Points& g);
   bool empty() const { return used_ == 0; }
+  // Calls f(scale, g) for each term.
+  template <typename F>
+  void ForEach(F f) const {
+    for (size_t k = 0; k < used_; ++k) f(terms_[k].scale, terms_[k].g);
+  }
 
   // Adds factor S x to y.
   void AddTimes(double factor, const ConstPoints& x, MutablePoints y) const;
