@@ -61,7 +61,7 @@ LinkEquations::LinkEquations(const Model& model) {
   const auto count = static_cast<Eigen::Index>(links_.size());
   active_.resize(links_.size());
   directions_.resize(3, count);
-  for (Eigen::VectorXd* each : {&multipliers, &change, &wanted, &rates, &lengths_, &tension_, &diagonal_}) {
+  for (Eigen::VectorXd* each : {&multipliers, &change, &wanted, &buffer, &lengths_, &tension_, &diagonal_}) {
     each->setZero(count);
   }
 }

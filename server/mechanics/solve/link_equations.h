@@ -69,7 +69,7 @@ class LinkEquations {
   void AddEntries(const Eigen::VectorXd& stiffness, std::vector<Eigen::Triplet<double>>& entries) const;
 
   // Of each link: its multiplier [N s], and room for as many numbers.
-  Eigen::VectorXd multipliers, change, wanted, rates;
+  Eigen::VectorXd multipliers, change, wanted, buffer;
 
  private:
   struct Coupling {

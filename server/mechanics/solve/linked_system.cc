@@ -31,11 +31,11 @@ void LinkedSystem::Precondition(const ImplicitSystem& system, LinkEquations& lin
 // Moves y by the least, in the norm of D, so that its rates are those wanted.
 void LinkedSystem::Meet(LinkEquations& links, Points& y) {
   for (int pass = 0; pass < kMeetings; ++pass) {
-    links.Rates(y, links.rates);
-    links.rates -= links.wanted;
-    if (links.rates.isZero(0)) return;
-    links.Solve(links.rates);
-    links.AddResponse(links.rates, inverse_, y);
+    links.Rates(y, links.buffer);
+    links.buffer -= links.wanted;
+    if (links.buffer.isZero(0)) return;
+    links.Solve(links.buffer);
+    links.AddResponse(links.buffer, inverse_, y);
   }
 }
 
@@ -50,11 +50,11 @@ double LinkedSystem::Descend(LinkEquations& links) {
   for (Eigen::Index i = 0; i < residual_.cols(); ++i)
     down_.col(i) = inverse_[static_cast<size_t>(i)] * residual_.col(i);
   for (int pass = 0; pass < 2; ++pass) {  // the second takes what rounding has left
-    links.Rates(down_, links.rates);
-    links.Solve(links.rates);
-    links.AddImpulses(links.rates, residual_);
-    links.AddResponse(links.rates, inverse_, down_);
-    links.change += links.rates;
+    links.Rates(down_, links.buffer);
+    links.Solve(links.buffer);
+    links.AddImpulses(links.buffer, residual_);
+    links.AddResponse(links.buffer, inverse_, down_);
+    links.change += links.buffer;
   }
   return Dot(residual_, down_);
 }
@@ -116,11 +116,11 @@ absl::Status LinkedSystem::SolveDirectly(const Model& model, const EvalContext& 
     shift_ = links.change - stiffness_.cwiseProduct(links.wanted);
     links.AddImpulses(shift_, residual_);
     system.SolveWith(residual_, y);
-    links.Rates(y, links.rates);
-    const double fastest = links.rates.cwiseAbs().maxCoeff() + y.cwiseAbs().maxCoeff();
-    links.rates -= links.wanted;
-    links.change += stiffness_.cwiseProduct(links.rates);
-    if (links.rates.cwiseAbs().maxCoeff() <= kMet * fastest) break;
+    links.Rates(y, links.buffer);
+    const double fastest = links.buffer.cwiseAbs().maxCoeff() + y.cwiseAbs().maxCoeff();
+    links.buffer -= links.wanted;
+    links.change += stiffness_.cwiseProduct(links.buffer);
+    if (links.buffer.cwiseAbs().maxCoeff() <= kMet * fastest) break;
   }
   return absl::OkStatus();
 }

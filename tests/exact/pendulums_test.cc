@@ -1,0 +1,133 @@
+// Pendulums on rigid links: their motion in angles, their energy, and where they hang.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "server/mechanics/constraint_residual.h"
+#include "tests/compile_text.h"
+
+namespace phrenic {
+namespace {
+
+constexpr double kGravity = 9.81, kRod = 0.5;
+
+// `links` masses of 1 kg on rods of half a metre, straight, `angle` from hanging, in the plane of x and z.
+std::string Pendulum(int links, double angle, const std::string& integrator, const std::string& more = "") {
+  std::string text = "name: 'pendulum' bodies { name: 'rods' role: ROLE_DEFORMABLE mass: " + std::to_string(links + 1) +
+                     " fixed_vertices: 0 polyhedron {";
+  for (int i = 0; i <= links; ++i) {
+    text += " vertices { x: " + std::to_string(kRod * i * std::sin(angle)) +
+            " z: " + std::to_string(-kRod * i * std::cos(angle)) + " }";
+  }
+  text +=
+      " } } forces { gravity { bodies: 'rods' acceleration { z: -9.81 } } } constraints { rigid_links { body: "
+      "'rods' list {";
+  for (int i = 0; i < links; ++i) text += " links { a: " + std::to_string(i) + " b: " + std::to_string(i + 1) + " }";
+  return text + " } } } " + more + " parameters { integrator: INTEGRATOR_" + integrator + " }";
+}
+
+// Angles from hanging and their rates.
+using Angles = std::array<double, 4>;
+
+Angles operator+(const Angles& a, const Angles& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]}; }
+Angles operator*(double k, const Angles& a) { return {k * a[0], k * a[1], k * a[2], k * a[3]}; }
+
+// The double pendulum of equal masses and rods.
+Angles Rates(const Angles& at) {
+  const auto [a, b, p, q] = at;
+  const double d = a - b, f = kGravity / kRod, below = 3 - std::cos(2 * d);
+  return {p, q,
+          (-3 * f * std::sin(a) - f * std::sin(a - 2 * b) - 2 * std::sin(d) * (q * q + p * p * std::cos(d))) / below,
+          2 * std::sin(d) * (2 * p * p + 2 * f * std::cos(a) + q * q * std::cos(d)) / below};
+}
+
+// The place of the lower mass.
+Eigen::Vector3d DoublePendulumAt(double seconds, double angle) {
+  Angles at = {angle, angle, 0, 0};
+  const int steps = static_cast<int>(std::round(seconds / 1e-5));
+  const double h = seconds / steps;
+  for (int i = 0; i < steps; ++i) {
+    const Angles k1 = Rates(at), k2 = Rates(at + h / 2 * k1), k3 = Rates(at + h / 2 * k2), k4 = Rates(at + h * k3);
+    at = at + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  }
+  return {kRod * (std::sin(at[0]) + std::sin(at[1])), 0, -kRod * (std::cos(at[0]) + std::cos(at[1]))};
+}
+
+double DoublePendulumError(const std::string& integrator, double dt) {
+  const double seconds = 1, angle = 2;
+  const auto model = CompileText(Pendulum(2, angle, integrator));
+  const State start = model->InitialState();
+  const State state = RunTo(*model, seconds, dt);
+  return (state.x.col(2) - DoublePendulumAt(seconds, angle)).norm();
+}
+
+TEST(DoublePendulum, OfRigidLinksFollowsItsAnglesAtTheOrderOfEachIntegrator) {
+  struct Case {
+    const char* integrator;
+    double dt, order, largest;  // [s], 1, [m]
+  };
+  const Case cases[] = {{"SEMI_IMPLICIT_EULER", 5e-4, 1, 0.02},
+                        {"VELOCITY_VERLET", 2e-3, 2, 1e-3},
+                        {"RUNGE_KUTTA_4", 1e-2, 4, 1e-4},
+                        {"LINEAR_IMPLICIT_EULER", 2e-4, 1, 0.02},
+                        {"BDF2", 6e-4, 2, 1e-3},
+                        {"TR_BDF2", 2e-3, 2, 1e-3}};
+  for (const auto& [integrator, dt, order, largest] : cases) {
+    const double one = DoublePendulumError(integrator, dt), two = DoublePendulumError(integrator, dt / 2);
+    std::fprintf(stderr, "  %s %g %g order %.2f\n", integrator, one, two, std::log2(one / two));
+    EXPECT_LT(one, largest) << integrator;
+    EXPECT_NEAR(std::log2(one / two), order, 0.25) << integrator;
+  }
+}
+
+// Kinetic energy and height, above the lowest that it can have.
+double Energy(const Model& model, const State& state) {
+  double energy = 0;
+  for (int i = 1; i < state.x.cols(); ++i) {
+    energy += model.mass[i] * (0.5 * state.v.col(i).squaredNorm() + kGravity * (state.x(2, i) + kRod * i));
+  }
+  return energy;
+}
+
+// The largest energy in 20 s, relative to the first.
+double LargestEnergy(int links, const std::string& integrator, double dt) {
+  const auto model = CompileText(Pendulum(links, M_PI / 2, integrator));
+  State state = model->InitialState();
+  const double first = Energy(*model, state);
+  Workspace work = model->MakeWorkspace();
+  double largest = 0;
+  const int steps = static_cast<int>(std::round(20 / dt));
+  for (int i = 0; i < steps; ++i) {
+    if (const absl::Status stepped = Step(*model, model->parameters, dt, state, work); !stepped.ok()) {
+      ADD_FAILURE() << integrator << ", " << links << " links, " << dt << " s, step " << i << ": " << stepped;
+      return HUGE_VAL;
+    }
+    largest = std::max(largest, Energy(*model, state) / first);
+  }
+  EXPECT_LT(LargestResidual(*model, state).metres, 1e-9) << integrator;
+  std::fprintf(stderr, "  %s %d links dt %g: largest %.4f last %.4f\n", integrator.c_str(), links, dt, largest,
+               Energy(*model, state) / first);
+  return largest;
+}
+
+TEST(LinkPendulums, GainNoEnergyInTwentySecondsUnderImplicitIntegrators) {
+  for (const char* integrator : {"BDF2", "TR_BDF2", "LINEAR_IMPLICIT_EULER"}) {
+    for (const double dt : {1e-3, 1e-2, 5e-2}) {
+      for (const int links : {1, 2}) EXPECT_LT(LargestEnergy(links, integrator, dt), 1.02) << dt;
+    }
+  }
+}
+
+// A chain that begins level hangs straight down.
+TEST(LinkChain, HangsInStaticEquilibrium) {
+  const auto model = CompileText(Pendulum(8, 1.5, "STATIC"));
+  const State state = RunTo(*model, 0.1, 0.1);
+  for (int i = 0; i <= 8; ++i) {
+    EXPECT_LT((state.x.col(i) - Eigen::Vector3d(0, 0, -kRod * i)).norm(), 1e-6) << i;
+  }
+  EXPECT_LT(LargestResidual(*model, state).metres, 1e-9);
+}
+
+}  // namespace
+}  // namespace phrenic
