@@ -22,10 +22,11 @@ double TrBdf2::MaxStep(const Spectrum&) const { return std::numeric_limits<doubl
 
 absl::Status TrBdf2::Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                              Workspace& work) const {
+  StartConsistently(plan, parameters, state, work);
   Points &position = work.Stage(1), &velocity = work.Stage(2);
   const double g = kWeight * dt;
   plan.SumForces(plan.ContextAhead(parameters, 0, state, work.scratch), work.force);
-  AddLinkForces(plan, parameters, 0, state, work.scratch, work.force);
+  AddLinkForces(plan, parameters, 0, state, true, work.scratch, work.force);
   position = work.before + g * work.velocity_before;
   velocity = work.velocity_before + g * work.force * plan.model().inverse_mass.asDiagonal();
   const ImplicitStage trapezoid{kGamma * dt, g, position, velocity, kNewtonSteps};

@@ -123,7 +123,7 @@ class StageSolver {
     SetInverseMasses(model_, masses());
     links_->Factorise(masses());
     Points& free = work_.Stage(0);
-    free = state_.v + work_.force * model_.inverse_mass.asDiagonal();
+    free = work_.force * model_.inverse_mass.asDiagonal();
     links_->Rates(free, links_->multipliers);
     links_->ClosingRates(stage_.g, links_->wanted);
     links_->multipliers -= links_->wanted;
@@ -203,9 +203,20 @@ absl::Status SolveStage(const StepPlan& plan, const v1::Parameters& parameters, 
   return StageSolver(plan, parameters, stage, state, work).Solve();
 }
 
+// Limits that pull at the end of the stage count as equalities: nothing leaves them in it.
 void ProjectStage(const StepPlan& plan, const v1::Parameters& parameters, const ImplicitStage& stage,
                   const Points& before, Workspace& work, State& state) {
   plan.ProjectPositions(parameters, before, stage.g, work.scratch, state);
+  if (LinkEquations* const links = ActingLinks(plan, parameters, work.scratch); links != nullptr) {
+    auto& masses = work.scratch.Get<VertexBlocks>();
+    SetInverseMasses(plan.model(), masses);
+    links->Release();
+    links->Turn(state.x);
+    links->Factorise(masses);
+    links->Rates(state.v, links->buffer);
+    links->Solve(links->buffer);
+    links->AddResponse(links->buffer, masses, state.v);
+  }
   plan.ProjectVelocities(parameters, work.scratch, state);
 }
 

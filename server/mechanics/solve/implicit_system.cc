@@ -155,10 +155,10 @@ void ImplicitSystem::SolveWith(const Points& b, Points& y) {
   rows_.shared_damping().Correct(g_, stiffened, y);
 }
 
-void ImplicitSystem::Times(const Points& p, Points& q) {
+void ImplicitSystem::Times(bool whole, const Points& p, Points& q) {
   rows_.DisplacementsToRows(p, product_);
   rows_.Face(product_);
-  rows_.Times(true, product_);
+  rows_.Times(whole, product_);
   rows_.RowsToForces(product_, q);
 }
 

@@ -38,8 +38,10 @@ class ImplicitSystem {
 
   // For LinkedSystem, which adds links to the system.
   //
-  // Sets q = A p on the free vertices, 0 on others, in single precision.
-  void Times(const Points& p, Points& q);
+  // Sets q = A p on the free vertices, 0 on others, in single precision; without the diagonal inertia() of A if not
+  // `whole`.
+  void Times(bool whole, const Points& p, Points& q);
+  const Eigen::VectorXd& inertia() const { return inertia_; }
   Eigen::Matrix3d Diagonal(int vertex) const { return rows_.Diagonal(vertex); }
   // Corrects y as Solve does.
   void KeepSums(const Points& b, Points& y) { rows_.KeepSums(b, inertia_, y); }

@@ -28,7 +28,13 @@ void AddDriven(const StepPlan& plan, const v1::Parameters& parameters, double ah
 
 }  // namespace
 
-void AddLinkForces(const StepPlan& plan, const v1::Parameters& parameters, double ahead, const State& state,
+void StartConsistently(const StepPlan& plan, const v1::Parameters& parameters, State& state, Workspace& work) {
+  if (ActingLinks(plan, parameters, work.scratch) == nullptr) return;
+  plan.ProjectVelocities(parameters, work.scratch, state);
+  work.velocity_before = state.v;
+}
+
+void AddLinkForces(const StepPlan& plan, const v1::Parameters& parameters, double ahead, const State& state, bool first,
                    const Scratch& scratch, Points& f) {
   LinkEquations* const links = ActingLinks(plan, parameters, scratch);
   if (links == nullptr || !links->complete()) return;
@@ -36,7 +42,7 @@ void AddLinkForces(const StepPlan& plan, const v1::Parameters& parameters, doubl
   SetInverseMasses(plan.model(), memory.masses);
   memory.acceleration = f * plan.model().inverse_mass.asDiagonal();
   AddDriven(plan, parameters, ahead, state, scratch, memory);
-  links->PlaceReached(state);
+  first ? links->PlaceReached(state) : links->Turn(state.x);
   for (int pass = 0; pass < kReleases; ++pass) {
     links->Factorise(memory.masses);
     links->Rates(memory.acceleration, links->multipliers);

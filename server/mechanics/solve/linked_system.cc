@@ -39,8 +39,8 @@ void LinkedSystem::Meet(LinkEquations& links, Points& y) {
   }
 }
 
-void LinkedSystem::Times(ImplicitSystem& system, const LinkEquations& links, const Points& p) {
-  system.Times(p, product_);
+void LinkedSystem::Times(ImplicitSystem& system, const LinkEquations& links, bool whole, const Points& p) {
+  system.Times(whole, p, product_);
   links.AddTensionTimes(p, product_);
 }
 
@@ -68,7 +68,7 @@ bool LinkedSystem::Iterate(ImplicitSystem& system, LinkEquations& links, double 
   int iterations = 0;
   const auto spent = [&] { return iterations >= effort.most_iterations() || (iterations > 0 && effort.Spent()); };
   while (now > tolerance * tolerance * first && !spent()) {
-    Times(system, links, direction_);
+    Times(system, links, true, direction_);
     const double step = now / Dot(direction_, product_);
     if (iterations == kLinkedIterations || !(step > 0) || !std::isfinite(step)) return effort.limited();
     y += step * direction_;
@@ -91,8 +91,8 @@ absl::Status LinkedSystem::Solve(const Model& model, const EvalContext& at, Impl
     if (model.inverse_mass[i] == 0) y.col(i).setZero();
   }
   Meet(links, y);
-  Times(system, links, y);
-  residual_ = b - product_;
+  Times(system, links, false, y);
+  residual_ = b - product_ - y * system.inertia().asDiagonal();
   links.change.setZero();
   if (!Iterate(system, links, tolerance, effort, y)) {
     if (absl::Status solved = SolveDirectly(model, at, system, links, b, y); !solved.ok()) return solved;

@@ -25,7 +25,7 @@ class LinkedSystem {
  private:
   void Precondition(const ImplicitSystem& system, LinkEquations& links);
   void Meet(LinkEquations& links, Points& y);
-  void Times(ImplicitSystem& system, const LinkEquations& links, const Points& p);
+  void Times(ImplicitSystem& system, const LinkEquations& links, bool whole, const Points& p);
   double Descend(LinkEquations& links);
   bool Iterate(ImplicitSystem& system, LinkEquations& links, double tolerance, SolverEffort& effort, Points& y);
   absl::Status SolveDirectly(const Model& model, const EvalContext& at, ImplicitSystem& system, LinkEquations& links,
