@@ -1,5 +1,4 @@
-// The translations of parts that nothing holds: free vertices that forces and links join to each other but to no fixed
-// or driven vertex.
+// The translations of parts that nothing holds (LooseParts).
 //
 // Internal forces sum to zero, so that a step changes a free part's momentum by external forces alone. An iterative
 // solver leaves a residual with a sum of its own, which a free part gains as momentum in every step. Correct adds to a
@@ -13,6 +12,7 @@
 
 #include "server/mechanics/linalg/outer_products.h"
 #include "server/mechanics/model.h"
+#include "server/mechanics/step/loose_parts.h"
 
 namespace phrenic {
 
@@ -39,6 +39,7 @@ class Translations {
   void Mean(const Eigen::VectorXd& inertia, const Points& v, Points& mean);
 
  private:
+  explicit Translations(LooseParts parts);
   void Join(int i, int j);
   int Root(int part);
   void AddProducts(double factor, const OuterProducts& products, const Points& y);
