@@ -57,7 +57,6 @@ Eigen::Vector3d DoublePendulumAt(double seconds, double angle) {
 double DoublePendulumError(const std::string& integrator, double dt) {
   const double seconds = 1, angle = 2;
   const auto model = CompileText(Pendulum(2, angle, integrator));
-  const State start = model->InitialState();
   const State state = RunTo(*model, seconds, dt);
   return (state.x.col(2) - DoublePendulumAt(seconds, angle)).norm();
 }

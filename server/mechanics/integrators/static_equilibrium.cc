@@ -11,7 +11,7 @@
 namespace phrenic {
 namespace {
 
-constexpr int kMostSteps = 300;
+constexpr int kMostSteps = 1000;
 constexpr double kStillness = 1e-9;               // of the scene's size: displacement of the last step
 constexpr double kFar = 0.05;                     // of the scene's size: a longer step is rejected
 constexpr double kFirst = 1.0 / 60, kLast = 100;  // of the pseudo-time step h [s]
