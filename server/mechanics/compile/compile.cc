@@ -15,6 +15,7 @@
 #include "server/mechanics/compile/scene_hash.h"
 #include "server/mechanics/integrators/catalogue.h"
 #include "server/mechanics/stability/largest_step.h"
+#include "server/mechanics/step/combination.h"
 #include "server/mechanics/step/step_plan.h"
 #include "server/schema/schema.h"
 
@@ -65,6 +66,9 @@ absl::Status AddElements(ModelBuilder& builder) {
     if (*constraint != nullptr) builder.model.constraints.push_back(*std::move(constraint));
   }
   const Integrator& integrator = FindIntegrator(builder.model.parameters.integrator());
+  if (absl::Status runs = CheckCombination(builder.model, integrator, builder.model.parameters); !runs.ok()) {
+    return FieldError("parameters.integrator", runs.message());
+  }
   builder.ReportElement("integrator", integrator.name(), builder.model.rest.cols(), "vertices",
                         absl::StrFormat("order %d", integrator.order()));
   return absl::OkStatus();
