@@ -51,7 +51,7 @@ struct RunInput {
 // Returns the limit of `--check residual_mm=LIMIT` [mm]; infinity if there is none.
 absl::StatusOr<double> ReadCheck(const std::string& text) {
   if (text.empty()) return HUGE_VAL;
-  std::string_view number = text;
+  absl::string_view number = text;
   double limit = 0;
   if (!absl::ConsumePrefix(&number, "residual_mm=") || !absl::SimpleAtod(number, &limit) || !(limit >= 0)) {
     return absl::InvalidArgumentError(

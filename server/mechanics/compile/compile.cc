@@ -67,7 +67,7 @@ absl::Status AddElements(ModelBuilder& builder) {
   }
   const Integrator& integrator = FindIntegrator(builder.model.parameters.integrator());
   if (absl::Status runs = CheckCombination(builder.model, integrator, builder.model.parameters); !runs.ok()) {
-    return FieldError("parameters.integrator", runs.message());
+    return FieldError("parameters.integrator", std::string(runs.message()));
   }
   builder.ReportElement("integrator", integrator.name(), builder.model.rest.cols(), "vertices",
                         absl::StrFormat("order %d", integrator.order()));
