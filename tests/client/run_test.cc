@@ -76,7 +76,7 @@ TEST(Run, WarnsOfLinksThatContradictEachOtherInEveryOutput) {
   const std::string what = "rigid-links:row does not hold, it is off by";
   const std::string file = Torn();
   for (const std::vector<std::string>& more :
-       {std::vector<std::string>{}, {"--export", Scratch("torn.csv")}, {"-o", "json"}}) {
+       {std::vector<std::string>{}, {"--export", Scratch("torn.msh")}, {"-o", "json"}}) {
     std::vector<std::string> words = {"run", file, "--seconds", "0.25"};
     words.insert(words.end(), more.begin(), more.end());
     EXPECT_THAT(Phrenic(words).err, HasSubstr(what));
@@ -91,7 +91,7 @@ TEST(Run, WarnsOfLinksThatContradictEachOtherInEveryOutput) {
 
 // An export steps a copy of the session: what is reported is that copy at its end.
 TEST(Run, WithAnExportReportsTheEndOfTheRun) {
-  const Outcome run = Phrenic({"run", Torn(), "--seconds", "0.25", "--export", Scratch("torn.csv"), "-o", "json"});
+  const Outcome run = Phrenic({"run", Torn(), "--seconds", "0.25", "--export", Scratch("torn.msh"), "-o", "json"});
   ASSERT_EQ(run.code, 0) << run.err;
   const auto json = run.json();
   ASSERT_FALSE(json.is_discarded()) << run.out;
