@@ -18,12 +18,13 @@ std::int64_t FortiethOf(std::int64_t total) {
   return std::min<std::int64_t>(1'000'000, std::max<std::int64_t>(1, total / 40));
 }
 
-// Keeps the first warning of each constraint, since the amounts differ.
+// Keeps the last warning of each constraint, since the amounts differ.
 void NoteWarnings(const v1::Session& session, RunCost& cost) {
   for (const std::string& warning : session.warnings()) {
     const std::string what = warning.substr(0, warning.find(','));
     const auto same = [&what](const std::string& other) { return other.starts_with(what); };
-    if (std::ranges::none_of(cost.warnings, same)) cost.warnings.push_back(warning);
+    std::erase_if(cost.warnings, same);
+    cost.warnings.push_back(warning);
   }
 }
 

@@ -21,7 +21,7 @@ ConstraintResidual LargestResidual(const Model& model, const State& state) {
 std::string ResidualWarning(const Model& model, const ConstraintResidual& residual) {
   if (residual.metres <= kTolerated * model.size) return "";
   return absl::StrFormat(
-      "%s does not hold, it is off by %.3g mm: take out links that contradict each other, move less, or use "
+      "%s does not hold, it is off by %.4g mm: take out links that contradict each other, move less, or use "
       "PROJECTION_EXACT",
       std::string(residual.constraint), 1e3 * residual.metres);
 }
