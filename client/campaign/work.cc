@@ -12,13 +12,14 @@ namespace {
 
 constexpr char kCell[] = "cell";
 
-void WriteCost(const RunCost& cost, const std::string& cell, v1::CampaignResult& result) {
+void WriteCost(const RunCost& cost, bool constrained, const std::string& cell, v1::CampaignResult& result) {
   v1::CampaignRow& row = *result.mutable_rows(0);
   row.set_simulated_seconds(cost.simulated);
   row.set_steps(cost.steps);
   if (cost.steps > 0) row.set_cpu_us_a_step(1e6 * cost.cpu / static_cast<double>(cost.steps));
   if (cost.wall > 0) row.set_times_real_time(cost.simulated / cost.wall);
   row.set_state_hash(cost.state_hash);
+  if (constrained) row.set_constraint_residual_mm(1e3 * cost.residual);
   for (const MeasureRange& range : cost.measures.ranges()) {
     v1::CampaignReading& reading = *result.add_readings();
     reading.set_cell(cell);
@@ -43,7 +44,7 @@ grpc::Status RunSession(const Context& context, const CampaignCell& cell, v1::Se
   RunCost cost;
   v1::Session& session = *created.mutable_session();
   status = StepUntil(context, TickAt(cell.seconds, session), stub, &session, &cost, [](std::int64_t) {});
-  if (status.ok()) WriteCost(cost, cell.row.cell(), result);
+  if (status.ok()) WriteCost(cost, session.has_constraint_residual(), cell.row.cell(), result);
   v1::CampaignRow& row = *result.mutable_rows(0);
   row.set_outcome(session.has_divergence() ? "diverged" : "done");
   if (session.has_divergence()) {

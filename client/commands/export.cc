@@ -8,6 +8,7 @@
 #include "client/connection/errors.h"
 #include "client/files/motion_file.h"
 #include "client/print/output.h"
+#include "client/print/print_session.h"
 
 namespace phrenic::client {
 namespace {
@@ -40,6 +41,7 @@ int Export(const Context& context, const ExportOptions& options) {
   v1::ExportSummary summary;
   const int code = ExportToFile(context, Connect(context), *request, options.motion.file, &summary);
   if (code != kOk) return code;
+  std::cerr << WarningLines(summary.warnings(), "phrenic: ");
   if (context.json()) {
     std::cout << Json(summary) << "\n";
   } else {

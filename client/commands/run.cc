@@ -1,8 +1,12 @@
 // `phrenic run`: simulates a scene with the server's own services in this process, over an in-process channel.
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/strip.h"
 #include "client/cli/argument_kinds.h"
 #include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
@@ -33,6 +37,7 @@ struct RunOptions {
   std::string data_dir, spool_dir;  // empty spool_dir: the server's default
   int threads = 1;
   bool dry_run = false;
+  std::string check;  // "residual_mm=0.001"; empty: none
 };
 
 // The run's options, parsed.
@@ -40,7 +45,20 @@ struct RunInput {
   v1::SceneSource source;
   v1::Parameters parameters;
   google::protobuf::RepeatedPtrField<v1::Pull> pulls;
+  double most_residual_mm = HUGE_VAL;
 };
+
+// Returns the limit of `--check residual_mm=LIMIT` [mm]; infinity if there is none.
+absl::StatusOr<double> ReadCheck(const std::string& text) {
+  if (text.empty()) return HUGE_VAL;
+  absl::string_view number = text;
+  double limit = 0;
+  if (!absl::ConsumePrefix(&number, "residual_mm=") || !absl::SimpleAtod(number, &limit) || !(limit >= 0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--check ", text, ": write residual_mm=LIMIT, such as residual_mm=0.001"));
+  }
+  return limit;
+}
 
 absl::StatusOr<RunInput> ReadRunInput(const RunOptions& options) {
   const absl::StatusOr<v1::SceneSource> source = ReadScene(options.scene);
@@ -49,7 +67,9 @@ absl::StatusOr<RunInput> ReadRunInput(const RunOptions& options) {
   if (!parameters.ok()) return parameters.status();
   const auto pulls = ReadPulls(options.pulls);
   if (!pulls.ok()) return pulls.status();
-  return RunInput{*source, *parameters, *pulls};
+  const absl::StatusOr<double> residual = ReadCheck(options.check);
+  if (!residual.ok()) return residual.status();
+  return RunInput{*source, *parameters, *pulls, *residual};
 }
 
 grpc::Status CreateRunSession(const Context& context, const RunOptions& options, const RunInput& input,
@@ -69,7 +89,9 @@ grpc::Status CreateRunSession(const Context& context, const RunOptions& options,
   return Call(context, stub, &v1::SessionService::Stub::GetSession, get, session);
 }
 
-int ExportRun(const Context& context, const RunOptions& options, service::Server& server, RunCost* cost) {
+// Sets `session` to the state at the end.
+int ExportRun(const Context& context, const RunOptions& options, service::Server& server, v1::Session* session,
+              RunCost* cost) {
   MotionOptions motion = options.motion;
   const auto format = record::FindFormat(session::ExportFormats(), FormatOf(motion.file));
   if (!format.ok()) return Fail(format.status());
@@ -85,7 +107,15 @@ int ExportRun(const Context& context, const RunOptions& options, service::Server
            summary.step_wall_seconds(),
            summary.step_cpu_seconds(),
            summary.state_hash(),
-           {}};
+           {},
+           summary.constraint_residual(),
+           {summary.warnings().begin(), summary.warnings().end()}};
+  session->set_time(summary.end_time());
+  session->set_tick(summary.end_tick());
+  session->clear_constraint_residual();
+  if (summary.has_constraint_residual()) session->set_constraint_residual(summary.constraint_residual());
+  session->set_residual_constraint(summary.residual_constraint());
+  *session->mutable_warnings() = summary.warnings();
   return code;
 }
 
@@ -123,6 +153,8 @@ void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& sess
       {"thesis", {{"figure", thesis.what}, {"steps_per_second", thesis.steps_per_second}}},
       {"state_hash", cost.state_hash},
       {"measures", MeasureRangesJson(cost.measures)},
+      {"constraint_residual_mm", 1e3 * cost.residual},
+      {"warnings", cost.warnings},
       {"file", options.motion.file},
       {"report", nlohmann::json::parse(Json(session.report()))},
       {"session", nlohmann::json::parse(Json(session.session()))},
@@ -165,7 +197,7 @@ int RunOn(const Context& context, const RunOptions& options, const RunInput& inp
   if (options.dry_run) return PrintPlan(context, options, session);
   RunCost cost;
   if (!options.motion.file.empty()) {
-    const int code = ExportRun(context, options, server, &cost);
+    const int code = ExportRun(context, options, server, session.mutable_session(), &cost);
     if (code != kOk) return code;
   } else {
     {
@@ -181,15 +213,18 @@ int RunOn(const Context& context, const RunOptions& options, const RunInput& inp
     PrintCostJson(options, session, cost, thesis);
   } else {
     PrintCost(options, session.report(), cost, thesis);
-    // An export steps a copy of the session, so that this session has no residuals of the run's end.
-    if (options.motion.file.empty()) {
-      std::cout << SolverText(session.session(), "solver: ", "\n")
-                << ResidualText(session.session(), "constraints kept within ", "\n");
-    }
+    std::cout << SolverText(session.session(), "solver: ", "\n")
+              << ResidualText(session.session(), "constraints kept within ", "\n");
   }
-  if (session.session().state() != v1::SESSION_STATE_DIVERGED) return kOk;
-  PrintSession(session.session(), std::cerr);
-  return kFailed;
+  for (const std::string& warning : cost.warnings) std::cerr << "phrenic: warning: " << warning << "\n";
+  if (session.session().state() == v1::SESSION_STATE_DIVERGED) {
+    PrintSession(session.session(), std::cerr);
+    return kFailed;
+  }
+  if (1e3 * cost.residual <= input.most_residual_mm) return kOk;
+  std::cerr << absl::StrFormat("phrenic: residual_mm is %.4g; the limit is at most %g\n", 1e3 * cost.residual,
+                               input.most_residual_mm);
+  return kMissed;
 }
 
 int Run(const Context& context, const RunOptions& options) {
@@ -220,6 +255,10 @@ CommandFunction SetUpRun(CLI::App& command) {
   command.add_option("--threads", options->threads, "threads for a step of a large scene; does not change the result")
       ->check(NumberIn(1, 256))
       ->capture_default_str();
+  command.add_option(
+      "--check", options->check,
+      "limit of the largest violation of a rigid link or length limit, residual_mm=LIMIT; exit code 4 if "
+      "it is exceeded");
   command.add_option("--spool", options->spool_dir, "folder for the temporary data of an export");
   AddDataFolder(command, options->data_dir);
   command.add_flag("--dry-run", options->dry_run, "compile the scene and print what the run would do");

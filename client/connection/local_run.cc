@@ -18,6 +18,16 @@ std::int64_t FortiethOf(std::int64_t total) {
   return std::min<std::int64_t>(1'000'000, std::max<std::int64_t>(1, total / 40));
 }
 
+// Keeps the last warning of each constraint, since the amounts differ.
+void NoteWarnings(const v1::Session& session, RunCost& cost) {
+  for (const std::string& warning : session.warnings()) {
+    const std::string what = warning.substr(0, warning.find(','));
+    const auto same = [&what](const std::string& other) { return other.starts_with(what); };
+    std::erase_if(cost.warnings, same);
+    cost.warnings.push_back(warning);
+  }
+}
+
 }  // namespace
 
 std::int64_t TickAt(double seconds, const v1::Session& session) {
@@ -41,6 +51,8 @@ grpc::Status StepUntil(const Context& context, std::int64_t last, v1::SessionSer
     *session = response.session();
     cost->state_hash = response.state_hash();
     cost->measures.Add(response.measures());
+    cost->residual = std::max(cost->residual, session->constraint_residual());
+    NoteWarnings(*session, *cost);
     if (response.measures().empty()) ticks = FortiethOf(last);
     progress(session->tick());
   }

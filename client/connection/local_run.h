@@ -18,6 +18,8 @@ struct RunCost {
   double simulated = 0, wall = 0, cpu = 0;  // [s]; wall and CPU time of stepping only
   std::string state_hash;                   // after the last step
   MeasureRanges measures;
+  double residual = 0;                // largest violation of a constraint that was seen [m]
+  std::vector<std::string> warnings;  // of the session, the last of each constraint
 };
 
 // Returns the first tick at which a session that starts at t = 0 has simulated `seconds` [s].

@@ -52,6 +52,12 @@ std::string ResidualText(const v1::Session& session, const char* before, const c
   return absl::StrFormat("%s%.2g mm%s%s", before, 1e3 * session.constraint_residual(), whose, after);
 }
 
+std::string WarningLines(const google::protobuf::RepeatedPtrField<std::string>& warnings, const char* before) {
+  std::string lines;
+  for (const std::string& warning : warnings) absl::StrAppend(&lines, before, "warning: ", warning, "\n");
+  return lines;
+}
+
 std::string SolverText(const v1::Session& session, const char* before, const char* after) {
   if (!session.has_solver_residual()) return "";
   return absl::StrFormat("%s%.1e left after %d iterations%s", before, session.solver_residual(),
@@ -89,6 +95,7 @@ void PrintSession(const v1::Session& session, std::ostream& out) {
   out << "  " << ParametersLine(session.parameters()) << "\n";
   out << SolverText(session, "  solver: ", "\n");
   out << ResidualText(session, "  constraints kept within ", "\n");
+  out << WarningLines(session.warnings(), "  ");
   if (!session.control().controller().empty()) out << ControlText(session.control());
   if (session.waiting_updates() > 0) out << "  " << session.waiting_updates() << " changes wait for their tick\n";
   for (const v1::Pull& pull : session.pulls()) {

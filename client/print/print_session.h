@@ -19,6 +19,9 @@ std::string ParametersLine(const v1::Parameters& parameters);
 // session has no constraints.
 std::string ResidualText(const v1::Session& session, const char* before, const char* after);
 
+// Returns a line for each warning, "BEFOREwarning: rigid-links:cube does not hold, ...\n".
+std::string WarningLines(const google::protobuf::RepeatedPtrField<std::string>& warnings, const char* before);
+
 // Returns the relative residual of the last implicit step's solver, "8.1e-04 left after 12 iterations", between
 // `before` and `after`; empty if no implicit step ran.
 std::string SolverText(const v1::Session& session, const char* before, const char* after);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
@@ -82,6 +83,9 @@ class LinePrinter final : public WatchPrinter {
       return;
     }
     const v1::Session& session = event.session();
+    if (std::exchange(warned_, session.warnings_size() > 0) != warned_) {
+      std::cerr << WarningLines(session.warnings(), "phrenic: ");
+    }
     residual_ = SolverText(session, "  solver: ", "") + ResidualText(session, "  constraints within ", "");
     if (session.revision() == revision_) return;
     revision_ = session.revision();
@@ -90,6 +94,7 @@ class LinePrinter final : public WatchPrinter {
 
  private:
   std::int64_t revision_ = -1;
+  bool warned_ = false;
   std::string residual_;  // at most about a second old
 };
 

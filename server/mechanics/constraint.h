@@ -5,8 +5,10 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "phrenic/v1/parameters.pb.h"
+#include "server/mechanics/link.h"
 #include "server/mechanics/scratch.h"
 #include "server/mechanics/state.h"
 
@@ -30,6 +32,12 @@ class Constraint {
   // True if the constraint is an equation at all times, as ProjectVelocities assumes; false for inequalities and for
   // the thesis' links.
   virtual bool smooth() const { return true; }
+  // Adds the links that it consists of and that have a movable end: implicit steps solve them together with the forces
+  // (solve/link_equations.h). Adds nothing if it can be projected after a step only.
+  virtual void ListLinks(std::vector<Link>&) const {}
+  // True if a method of several steps may continue from positions `before` over `after`, 3 x n [m]: the constraint is
+  // the same equation at both.
+  virtual bool SameMotion(const ConstPoints& /*before*/, const ConstPoints& /*after*/) const { return smooth(); }
   // Returns the largest violation [m].
   virtual double Residual(const State& state) const = 0;
 

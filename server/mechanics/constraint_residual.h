@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_CONSTRAINT_RESIDUAL_H_
 #define PHRENIC_SERVER_MECHANICS_CONSTRAINT_RESIDUAL_H_
 
+#include <string>
 #include <string_view>
 
 #include "server/mechanics/model.h"
@@ -17,6 +18,10 @@ struct ConstraintResidual {
 // Returns the largest violation in a state. After a step it is below 1e-9 of a link's length, unless constraints
 // contradict each other or are switched off. Thread-safe.
 ConstraintResidual LargestResidual(const Model& model, const State& state);
+
+// Returns what is wrong and the remedy if the violation is more than what projections leave, 1e-6 of the scene's size;
+// empty if it is not. For people: a warning of every output.
+std::string ResidualWarning(const Model& model, const ConstraintResidual& residual);
 
 }  // namespace phrenic
 

@@ -28,7 +28,7 @@ void SumSharedDamping(const Model& model, const EvalContext& at, OuterProducts& 
   shared.Clear();
   for (const auto& force : model.forces) force->AddSharedDamping(at, shared);
   for (const auto& motion : model.motions) {
-    if (motion->follows_coordinates()) shared.ForEach([&](Points& g) { motion->TransferForces(at, g); });
+    if (motion->follows_coordinates()) shared.Change([&](Points& g) { motion->TransferForces(at, g); });
   }
 }
 

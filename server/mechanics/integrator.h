@@ -33,7 +33,7 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
   virtual std::string_view name() const = 0;
-  // The power of the step with which the error at a given time falls, without rigid links; 0 if it does not fall.
+  // The power of the step with which the error at a given time falls, with rigid links too; 0 if it does not fall.
   virtual int order() const = 0;
   // Returns the largest stable step [s]; infinity if any step is stable, 0 if none is.
   virtual double MaxStep(const Spectrum& spectrum) const = 0;

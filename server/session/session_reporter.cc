@@ -18,10 +18,14 @@ void WriteResiduals(const Run& run, v1::Session& status) {
     status.set_solver_residual(run.effort().residual());
     status.set_solver_iterations(run.effort().iterations());
   }
+  status.clear_warnings();
   if (run.model().constraints.empty()) return;
   const ConstraintResidual residual = LargestResidual(run.model(), run.state());
   status.set_constraint_residual(residual.metres);
   status.set_residual_constraint(std::string(residual.constraint));
+  if (std::string warning = ResidualWarning(run.model(), residual); !warning.empty()) {
+    status.add_warnings(std::move(warning));
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/constraint_residual.h"
+#include "server/mechanics/step/bounds.h"
 #include "server/mesh/nearest.h"
 #include "server/mesh/topology.h"
 #include "server/store/saved_state.h"
@@ -246,7 +247,7 @@ absl::Status CheckState(const Model& model, const State& state, double residual)
   const bool finite = state.x.allFinite() && state.v.allFinite() && state.scalars.q.allFinite() &&
                       state.scalars.v.allFinite() && std::isfinite(state.time) && std::isfinite(state.phase);
   if (!finite) return Unmatched("the saved state has numbers that are not finite");
-  if (state.x.size() > 0 && state.x.cwiseAbs().maxCoeff() > model.bound) {
+  if (!PositionsWithinBounds(model, state.x)) {
     return Unmatched("the saved state is outside the scene's bounds");
   }
   if (absl::Status status = CheckStretches(model, state); !status.ok()) return status;

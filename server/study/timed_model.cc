@@ -131,6 +131,10 @@ class TimedConstraint final : public Constraint {
     constraint_.ProjectVelocities(parameters, scratch, state);
   }
   bool smooth() const override { return constraint_.smooth(); }
+  void ListLinks(std::vector<Link>& links) const override { constraint_.ListLinks(links); }
+  bool SameMotion(const ConstPoints& before, const ConstPoints& after) const override {
+    return constraint_.SameMotion(before, after);
+  }
   double Residual(const State& state) const override {
     const Span span(positions_);
     return constraint_.Residual(state);

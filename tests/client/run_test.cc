@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iterator>
+#include <string>
+#include <vector>
 
 #include "tests/client/programs.h"
 
@@ -51,6 +53,53 @@ TEST(Run, JsonHasTheNumbersAndTheReport) {
   EXPECT_GT(json["steps_per_second"].get<double>(), 0);
   EXPECT_GT(json["thesis"]["steps_per_second"].get<double>(), 0);
   EXPECT_EQ(json["report"]["scene"], "cube-springs");
+}
+
+// Two masses at a metre's distance from each other and from two ends that are driven three metres apart.
+std::string Torn() {
+  return WriteScratch("torn.textproto", R"(
+    name: "torn"
+    bodies {
+      name: "row" role: ROLE_DEFORMABLE mass: 4
+      polyhedron { vertices { } vertices { x: 1 } vertices { x: 2 } vertices { x: 3 } }
+    }
+    motions { oscillation { body: "row" vertices: [0] amplitude { x: -1 } period: 1 } }
+    motions { oscillation { body: "row" vertices: [3] amplitude { x: 1 } period: 1 } }
+    constraints {
+      rigid_links { body: "row" list { links { a: 0 b: 1 } links { a: 1 b: 2 } links { a: 2 b: 3 } } }
+    }
+    parameters { time_step: 0.01 }
+  )");
+}
+
+TEST(Run, WarnsOfLinksThatContradictEachOtherInEveryOutput) {
+  const std::string what = "rigid-links:row does not hold, it is off by";
+  const std::string file = Torn();
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, {"--export", Scratch("torn.msh")}, {"-o", "json"}}) {
+    std::vector<std::string> words = {"run", file, "--seconds", "0.25"};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_THAT(Phrenic(words).err, HasSubstr(what));
+    words.insert(words.end(), {"--check", "residual_mm=0.001"});
+    const Outcome checked = Phrenic(words);
+    EXPECT_EQ(checked.code, 4);
+    EXPECT_THAT(checked.err, HasSubstr("the limit is at most 0.001"));
+  }
+  EXPECT_EQ(Phrenic({"run", "cube-tensegrity", "--seconds", "1", "--check", "residual_mm=0.001"}).code, 0);
+  EXPECT_THAT(Phrenic({"run", file, "--check", "height=3"}).err, HasSubstr("residual_mm=LIMIT"));
+}
+
+// An export steps a copy of the session: what is reported is that copy at its end.
+TEST(Run, WithAnExportReportsTheEndOfTheRun) {
+  const Outcome run = Phrenic({"run", Torn(), "--seconds", "0.25", "--export", Scratch("torn.msh"), "-o", "json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto json = run.json();
+  ASSERT_FALSE(json.is_discarded()) << run.out;
+  EXPECT_NEAR(json["session"]["time"].get<double>(), 0.25, 1e-9);
+  EXPECT_GT(json["session"]["constraint_residual"].get<double>(), 0.1);
+  EXPECT_GT(json["constraint_residual_mm"].get<double>(), 100);
+  EXPECT_EQ(json["warnings"].size(), 1);
+  EXPECT_EQ(json["session"]["warnings"], json["warnings"]);
 }
 
 TEST(Run, PrintsTheScenesMeasures) {

@@ -149,6 +149,29 @@ TEST_P(ConstraintContract, ProjectedVelocitiesStayOnIt) {
   EXPECT_LT((AngularMomentum(*model_, state) - angular).norm(), 1e-10);
 }
 
+// With every other constraint implicit integrators keep their order and gain nothing (order_test.cc).
+TEST(ThesisLinks, AreRefusedWithImplicitIntegratorsWhenCompiledAndWhenChangedLive) {
+  const std::string links = "rigid_links { body: 'truss' " PAIRS " projection: PROJECTION_THESIS }";
+  for (const char* integrator : {"LINEAR_IMPLICIT_EULER", "BDF2", "TR_BDF2", "STATIC", "PROJECTIVE_DYNAMICS"}) {
+    const std::string chosen = std::string("parameters { integrator: INTEGRATOR_") + integrator + " ";
+    const auto refused = TryCompileText(Scene(links, chosen + "}"));
+    EXPECT_EQ(refused.status().code(), absl::StatusCode::kInvalidArgument) << integrator;
+    EXPECT_NE(refused.status().message().find("parameters.integrator"), std::string::npos) << refused.status();
+    EXPECT_NE(refused.status().message().find("PROJECTION_EXACT"), std::string::npos) << refused.status();
+    EXPECT_TRUE(TryCompileText(Scene(links, chosen + "apply_links: false }")).ok()) << integrator;
+    const auto model = CompileText(Scene(links));
+    v1::Parameters live = model->parameters;
+    v1::Integrator kind = v1::INTEGRATOR_UNSPECIFIED;
+    ASSERT_TRUE(v1::Integrator_Parse(std::string("INTEGRATOR_") + integrator, &kind));
+    live.set_integrator(kind);
+    State state = model->InitialState();
+    Workspace work = model->MakeWorkspace();
+    const absl::Status stepped = Step(*model, live, 1e-3, state, work);
+    EXPECT_EQ(stepped.code(), absl::StatusCode::kAborted);
+    EXPECT_NE(stepped.message().find("PROJECTION_EXACT"), std::string::npos) << stepped;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Constraints, ConstraintContract, testing::ValuesIn(kConstraints),
                          [](const auto& test) { return std::string(test.param.name); });
 

@@ -142,6 +142,25 @@ TEST_P(IntegratorContract, AllocatesNothingInAStep) {
   EXPECT_EQ(Allocations(), before);
 }
 
+// Links in the step, and an inextensible cable.
+TEST_P(IntegratorContract, AllocatesNothingInAStepWithLinks) {
+  const auto model = CompileText(
+      "name: 'links' bodies { name: 'net' role: ROLE_DEFORMABLE mass: 2 fixed_vertices: [0, 2] grid { columns: 3 rows: "
+      "3 u { x: 0.1 } v { y: 0.1 } } } forces { springs { bodies: 'net' stiffness: 400 } } forces { gravity { bodies: "
+      "'net' acceleration { z: -1 } } } constraints { rigid_links { body: 'net' list { links { a: 3 b: 4 } links { a: "
+      "4 b: 5 } } } } constraints { length_limits { body: 'net' list { links { a: 1 b: 7 } } at_most_ratio: 1 } } "
+      "parameters { integrator: INTEGRATOR_" +
+      std::string(GetParam().name) + " }");
+  ASSERT_NE(model, nullptr);
+  if (model->parameters.integrator() == v1::INTEGRATOR_THESIS) GTEST_SKIP() << "its vertices are heavier";
+  State state = model->InitialState();
+  Workspace work = model->MakeWorkspace();
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(Step(*model, model->parameters, 1e-3, state, work).ok());
+  const std::int64_t before = Allocations();
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(Step(*model, model->parameters, 1e-3, state, work).ok());
+  EXPECT_EQ(Allocations(), before);
+}
+
 // A row of three: driven, linked to it, held by a spring.
 std::string DrivenRow(const IntegratorCase& integrator) {
   return "name: 'row' bodies { name: 'row' role: ROLE_DEFORMABLE mass: 3 polyhedron { vertices {} vertices { x: 0.1 } "

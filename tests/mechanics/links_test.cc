@@ -109,6 +109,36 @@ TEST(ConflictingLinks, EndWithAFiniteStateAndSayWhatIsLeft) {
   const double span = (state.x.col(3) - state.x.col(0)).norm();
   EXPECT_GE(LargestResidual(*model, state).metres, (span - 3) / 3 - 1e-9) << "no way to share it out is better";
   EXPECT_LE(LargestResidual(*model, state).metres, span - 3 + 1e-9) << "one link at most bears it all";
+  const std::string warning = ResidualWarning(*model, LargestResidual(*model, state));
+  EXPECT_NE(warning.find("rigid-links:row does not hold"), std::string::npos) << warning;
+}
+
+TEST(LinkedChain, IsNotWarnedOfWhileItHolds) {
+  const auto model = CompileText(Net(5, 4, GridPairs(5, 4)));
+  const State state = RunTo(*model, 0.3, 1e-3);
+  EXPECT_EQ(ResidualWarning(*model, LargestResidual(*model, state)), "");
+}
+
+// Implicit steps end too where links cannot hold, and leave as much.
+TEST(ConflictingLinks, EndWithAFiniteStateOrAnHonestStopUnderImplicitIntegrators) {
+  for (const char* integrator : {"LINEAR_IMPLICIT_EULER", "BDF2", "TR_BDF2", "STATIC"}) {
+    const auto model = CompileText(
+        std::string("name: 'torn' bodies { name: 'row' role: ROLE_DEFORMABLE mass: 4 polyhedron { vertices {} vertices "
+                    "{ x: 1 } vertices { x: 2 } vertices { x: 3 } } } "
+                    "motions { oscillation { body: 'row' vertices: [0] amplitude { x: -1 z: 0.2 } period: 1 } } "
+                    "motions { oscillation { body: 'row' vertices: [3] amplitude { x: 1 } period: 1 } } "
+                    "constraints { rigid_links { body: 'row' list { links { a: 0 b: 1 } links { a: 1 b: 2 } links { a: "
+                    "2 b: 3 } } } } parameters { integrator: INTEGRATOR_") +
+        integrator + " }");
+    ASSERT_NE(model, nullptr);
+    State state = model->InitialState();
+    Workspace work = model->MakeWorkspace();
+    absl::Status stepped;
+    for (int i = 0; i < 250 && stepped.ok(); ++i) stepped = Step(*model, model->parameters, 1e-3, state, work);
+    EXPECT_TRUE(stepped.ok() || !stepped.message().empty()) << integrator;
+    EXPECT_TRUE(!stepped.ok() || (state.x.allFinite() && state.v.allFinite())) << integrator;
+    std::fprintf(stderr, "%s %s\n", integrator, stepped.ToString().c_str());
+  }
 }
 
 // A load along two links takes their end a kilometre away in one step, from where they bring it back: no divergence.

@@ -17,6 +17,7 @@
 #include "server/mechanics/integrators/catalogue.h"
 #include "server/mechanics/skinning/tissue_bodies.h"
 #include "server/mechanics/stability/largest_step.h"
+#include "server/mechanics/step/combination.h"
 #include "server/mechanics/step/step_plan.h"
 #include "server/schema/schema.h"
 
@@ -101,6 +102,9 @@ absl::Status AddElements(ModelBuilder& builder) {
     if (*constraint != nullptr) builder.model.constraints.push_back(*std::move(constraint));
   }
   const Integrator& integrator = FindIntegrator(builder.model.parameters.integrator());
+  if (absl::Status runs = CheckCombination(builder.model, integrator, builder.model.parameters); !runs.ok()) {
+    return FieldError("parameters.integrator", std::string(runs.message()));
+  }
   builder.ReportElement("integrator", integrator.name(), builder.model.rest.cols(), "vertices",
                         absl::StrFormat("order %d", integrator.order()));
   return absl::OkStatus();

@@ -65,6 +65,15 @@ void Limits::ProjectVelocities(const v1::Parameters& parameters, const Scratch& 
   if (parameters.apply_links()) network_.ProjectVelocities(scratch, state);
 }
 
+void Limits::ListLinks(std::vector<Link>& links) const {
+  links.insert(links.end(), network_.links().begin(), network_.links().end());
+}
+
+bool Limits::SameMotion(const ConstPoints& before, const ConstPoints& after) const {
+  return std::none_of(network_.links().begin(), network_.links().end(),
+                      [&](const Link& limit) { return limit.Reached(before) != limit.Reached(after); });
+}
+
 double Limits::Residual(const State& state) const {
   double worst = 0;
   for (const Link& limit : network_.links()) worst = std::max(worst, limit.Violation(limit.Stretch(state.x)));

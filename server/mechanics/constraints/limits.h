@@ -21,6 +21,8 @@ class Limits final : public Constraint {
                State& state) const override;
   void ProjectVelocities(const v1::Parameters& parameters, const Scratch& scratch, State& state) const override;
   bool smooth() const override { return false; }
+  bool SameMotion(const ConstPoints& before, const ConstPoints& after) const override;
+  void ListLinks(std::vector<Link>& links) const override;
   double Residual(const State& state) const override;
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <tuple>
@@ -192,6 +193,12 @@ void RigidLinks::ProjectVelocities(const v1::Parameters& parameters, const Scrat
   if (!parameters.apply_links()) return;
   for (const Link& link : alone_) StopStretching(link, state);
   network_.ProjectVelocities(scratch, state);
+}
+
+void RigidLinks::ListLinks(std::vector<Link>& links) const {
+  std::copy_if(alone_.begin(), alone_.end(), std::back_inserter(links),
+               [](const Link& link) { return link.Movable(); });
+  links.insert(links.end(), network_.links().begin(), network_.links().end());
 }
 
 double RigidLinks::Residual(const State& state) const {

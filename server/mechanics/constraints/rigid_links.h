@@ -36,6 +36,7 @@ class RigidLinks final : public BlockConstraint {
   void ProjectAcrossBlocks(const v1::Parameters& parameters, const ConstPoints& before, double dt,
                            const Scratch& scratch, State& state) const override;
   void ProjectVelocities(const v1::Parameters& parameters, const Scratch& scratch, State& state) const override;
+  void ListLinks(std::vector<Link>& links) const override;
   double Residual(const State& state) const override;
 
  private:

@@ -22,9 +22,17 @@ absl::Status AdvanceFromTwo(const StepPlan& plan, const v1::Parameters& paramete
   state.v = 2 * work.velocity_before - state.history.v;  // first guess
   const ImplicitStage stage{dt, 2 * dt / 3, position, velocity, kNewtonSteps};
   if (absl::Status solved = SolveStage(plan, parameters, stage, state, work); !solved.ok()) return solved;
-  plan.ProjectPositions(parameters, work.before, dt, work.scratch, state);
-  plan.ProjectVelocities(parameters, work.scratch, state);
+  ProjectStage(plan, parameters, stage, work.before, work, state);
   return absl::OkStatus();
+}
+
+// False if a length limit was reached or released in the step, or a projection moves positions after each: the step
+// before is then not one of the same motion.
+bool IsSmooth(const StepPlan& plan, const v1::Parameters& parameters, const State& state, Workspace& work) {
+  for (const auto& constraint : plan.model().constraints) {
+    if (parameters.apply_links() && !constraint->SameMotion(work.before, state.x)) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -37,7 +45,7 @@ absl::Status Bdf2::Advance(const StepPlan& plan, const v1::Parameters& parameter
                                                    : TrBdf2().Advance(plan, parameters, dt, state, work);
   if (!advanced.ok()) return advanced;
   History& history = state.history;
-  history.integrator = v1::INTEGRATOR_BDF2;
+  history.integrator = IsSmooth(plan, parameters, state, work) ? v1::INTEGRATOR_BDF2 : v1::INTEGRATOR_UNSPECIFIED;
   history.tick = state.tick + 1;
   history.dt = dt;
   history.x = work.before;

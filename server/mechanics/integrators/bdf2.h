@@ -1,8 +1,9 @@
 // The second backward differentiation formula: x' = (4 x - x_before + 2 dt v')/3, and v' in the same way from
 // a = f(x', v')/m, by Newton's method.
 //
-// Order 2; stable at any step if the forces are linear; damps fast vibrations. State::history keeps the step before. If
-// that is missing or had another length, the step is one of TR-BDF2.
+// Order 2, with links too, which are solved within the step (solve/implicit_stage.h); stable at any step if the forces
+// are linear; damps fast vibrations. State::history keeps the step before. If that is missing or had another length, or
+// a length limit was reached or released in it, the step is one of TR-BDF2.
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_BDF2_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_BDF2_H_
 

@@ -19,8 +19,7 @@ absl::Status LinearImplicitEuler::Advance(const StepPlan& plan, const v1::Parame
                             .newton_steps = 1,
                             .guess = &work.velocity_before};
   if (absl::Status solved = SolveStage(plan, parameters, stage, state, work); !solved.ok()) return solved;
-  plan.ProjectPositions(parameters, work.before, dt, work.scratch, state);
-  plan.ProjectVelocities(parameters, work.scratch, state);
+  ProjectStage(plan, parameters, stage, work.before, work, state);
   return absl::OkStatus();
 }
 

@@ -1,7 +1,8 @@
 // Backward Euler with one Newton step (Baraff and Witkin 1998): (M + dt C + dt^2 K) v' = M v + dt f(x, 0), then
 // x += dt v', with M the masses, C the damping and K the stiffness.
 //
-// Order 1; stable at any step if the forces are linear. It damps fast vibrations strongly.
+// Order 1; stable at any step if the forces are linear. It damps fast vibrations strongly. Links are solved together
+// with the forces (solve/implicit_stage.h).
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_LINEAR_IMPLICIT_EULER_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_LINEAR_IMPLICIT_EULER_H_
 

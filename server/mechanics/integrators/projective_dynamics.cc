@@ -58,15 +58,26 @@ class Search {
     return Follow(Downhill);
   }
 
-  // Shortens the velocities until they are passive. Kinetic and potential energy together change by at most
-  // -r . v' - (v' - v) . M (v' - v)/2 if the potential energy is convex, since it then rises by at most -dt f . v'.
+  // Shifts each part that nothing holds so that the residual has no sum: internal forces then leave its momentum alone.
+  void KeepMomentum() {
+    if (system_.AllHeld()) return;
+    system_.KeepSums(residual_, state_.v);
+    Evaluate(residual_);
+  }
+
+  // Shortens the velocities, of free parts relative to their mean, until they are passive. Kinetic and potential energy
+  // together change by at most -r . v' - (v' - v) . M (v' - v)/2 if the potential energy is convex, since it then rises
+  // by at most -dt f . v'.
   void KeepPassive() {
+    KeepMomentum();
     if (Passive(residual_)) return;
+    system_.MeanVelocity(state_.v, next_);
     direction_.setZero();
-    plan_.AddToFree(1, state_.v, direction_);
-    state_.v.setZero();
+    plan_.AddToFree(1, state_.v - next_, direction_);
+    state_.v = next_;
     Evaluate(residual_);
     Follow([this](double, double) { return Passive(next_); });
+    KeepMomentum();
   }
 
  private:

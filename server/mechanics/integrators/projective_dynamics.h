@@ -6,7 +6,7 @@
 // shortened if r along it changes its sign, so that it leads downhill for any stiff and nonlinear force, and the last
 // velocities are shortened if they would gain energy. Order 1 at small steps, where the iterations suffice; at large
 // steps the remaining residual limits the error, most of all where A is too stiff: for springs across their direction.
-// Stable at any step.
+// Stable at any step. Links are projected after the step, which may gain energy (README.md).
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_PROJECTIVE_DYNAMICS_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_PROJECTIVE_DYNAMICS_H_
 

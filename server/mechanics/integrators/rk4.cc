@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "server/mechanics/solve/link_forces.h"
 #include "server/mechanics/step/step_plan.h"
 
 namespace phrenic {
@@ -40,11 +41,13 @@ absl::Status Rk4::Advance(const StepPlan& plan, const v1::Parameters& parameters
                           Workspace& work) const {
   Points &velocity = work.Stage(0), &acceleration = work.Stage(1);     // of the stage
   Points &velocities = work.Stage(2), &accelerations = work.Stage(3);  // their weighted sums
+  StartConsistently(plan, parameters, state, work);
   velocities.setZero();
   accelerations.setZero();
   for (const Stage& stage : kStages) {
     if (stage.at > 0) MoveBy(plan, parameters, stage.at * dt, velocity, acceleration, work, state);
     plan.SumForces(plan.ContextAhead(parameters, stage.at * dt, state, work.scratch), work.force);
+    AddLinkForces(plan, parameters, stage.at * dt, state, stage.at == 0, work.scratch, work.force);
     velocity = state.v;
     acceleration = work.force * plan.model().inverse_mass.asDiagonal();
     velocities += stage.weight * velocity;

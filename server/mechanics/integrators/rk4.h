@@ -1,7 +1,8 @@
 // The classical Runge-Kutta method: four evaluations of the forces at 0, dt/2, dt/2 and dt, weights 1/6, 1/3, 1/3, 1/6.
 // Motions are evaluated at each stage.
 //
-// Order 4; order 1 with rigid links, which are projected at the end of the step. Stable up to dt = 2.78/|lambda|,
+// Order 4, with rigid links too: each stage has their forces, and what that leaves of their lengths at the end of the
+// step is projected. Stable up to dt = 2.78/|lambda|,
 // lambda the fastest eigenvalue of the motion [1/s]. Not symplectic: it loses energy slowly.
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_RK4_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_RK4_H_

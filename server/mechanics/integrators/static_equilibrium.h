@@ -2,7 +2,8 @@
 // Inertia and friction have no effect.
 //
 // Newton's method with pseudo-transient continuation (Kelley and Keyes 1998): (M/h^2 + K) dx = f, with h growing as
-// long as steps stay small, so that the last steps are Newton's. A sequence of such steps is the quasi-static motion;
+// long as steps stay small, so that the last steps are Newton's. Links are solved together with the forces: their
+// multipliers are unknowns of each step. A sequence of such steps is the quasi-static motion;
 // the order is 0, since it is not the limit of the dynamic motion for any step.
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_STATIC_EQUILIBRIUM_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_STATIC_EQUILIBRIUM_H_

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "server/mechanics/solve/implicit_stage.h"
+#include "server/mechanics/solve/link_forces.h"
 #include "server/mechanics/step/step_plan.h"
 
 namespace phrenic {
@@ -21,19 +22,21 @@ double TrBdf2::MaxStep(const Spectrum&) const { return std::numeric_limits<doubl
 
 absl::Status TrBdf2::Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state,
                              Workspace& work) const {
+  StartConsistently(plan, parameters, state, work);
   Points &position = work.Stage(1), &velocity = work.Stage(2);
   const double g = kWeight * dt;
   plan.SumForces(plan.ContextAhead(parameters, 0, state, work.scratch), work.force);
+  AddLinkForces(plan, parameters, 0, state, true, work.scratch, work.force);
   position = work.before + g * work.velocity_before;
   velocity = work.velocity_before + g * work.force * plan.model().inverse_mass.asDiagonal();
   const ImplicitStage trapezoid{kGamma * dt, g, position, velocity, kNewtonSteps};
   if (absl::Status solved = SolveStage(plan, parameters, trapezoid, state, work); !solved.ok()) return solved;
+  ProjectStage(plan, parameters, trapezoid, work.before, work, state);
   position = kMiddle * state.x + kStart * work.before;
   velocity = kMiddle * state.v + kStart * work.velocity_before;
   const ImplicitStage bdf2{dt, g, position, velocity, kNewtonSteps};
   if (absl::Status solved = SolveStage(plan, parameters, bdf2, state, work); !solved.ok()) return solved;
-  plan.ProjectPositions(parameters, work.before, dt, work.scratch, state);
-  plan.ProjectVelocities(parameters, work.scratch, state);
+  ProjectStage(plan, parameters, bdf2, work.before, work, state);
   return absl::OkStatus();
 }
 

@@ -1,7 +1,9 @@
 // TR-BDF2 (Bank et al. 1985): the trapezoidal rule to t + (2 - sqrt 2) dt, then BDF2 over the three points, each by
 // Newton's method.
 //
-// Order 2; stable at any step if the forces are linear; damps fast vibrations (L-stable). Needs no step before.
+// Order 2, with links too: both stages solve them together with the forces, and the trapezoidal rule begins with their
+// forces (solve/link_forces.h). Stable at any step if the forces are linear; damps fast vibrations (L-stable). Needs no
+// step before.
 #ifndef PHRENIC_SERVER_MECHANICS_INTEGRATORS_TR_BDF2_H_
 #define PHRENIC_SERVER_MECHANICS_INTEGRATORS_TR_BDF2_H_
 

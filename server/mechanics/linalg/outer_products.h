@@ -19,10 +19,15 @@ class OuterProducts {
   // Adds a term, unless scale is 0. Requires: scale >= 0.
   void Add(double scale, const Points& g);
   bool empty() const { return used_ == 0; }
-  // Calls change(g) for each term.
-  template <typename Change>
-  void ForEach(const Change& change) {
+  // Calls change(g) for each term, which may change g.
+  template <typename F>
+  void Change(F change) {
     for (size_t k = 0; k < used_; ++k) change(terms_[k].g);
+  }
+  // Calls f(scale, g) for each term.
+  template <typename F>
+  void ForEach(F f) const {
+    for (size_t k = 0; k < used_; ++k) f(terms_[k].scale, terms_[k].g);
   }
 
   // Adds factor S x to y.

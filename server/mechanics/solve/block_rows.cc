@@ -93,7 +93,7 @@ void PutFirst(std::vector<int> order, int all, std::vector<int>& vertices) {
 
 }  // namespace
 
-BlockRows::BlockRows(const Model& model) : row_(model.rest.cols(), -1) {
+BlockRows::BlockRows(const Model& model) : row_(model.rest.cols(), -1), translations_(model) {
   NoteCalls(model);
   for (int i = 0; i < static_cast<int>(row_.size()); ++i) {
     if (model.inverse_mass[i] == 0) continue;
@@ -218,6 +218,7 @@ void BlockRows::Assemble(const Model& model, const EvalContext& at, double g, co
   std::fill(diagonal_.begin(), diagonal_.end(), Quad());
   extra_.clear();
   outer_.Clear();
+  translations_.Begin();
   for (size_t f = 0; f < model.forces.size(); ++f) {
     next_ = first_call_[f];
     model.forces[f]->AddStiffness(at, *this);
@@ -256,7 +257,9 @@ Quad* BlockRows::Find(int i, int j) {
 }
 
 void BlockRows::Add(int i, int j, const Eigen::Matrix3d& block) {
-  if (i > j || row_[i] < 0 || row_[j] < 0) return;  // (j, i) is its transpose
+  if (row_[i] < 0 || row_[j] < 0) return;
+  if (!translations_.empty()) translations_.Add(i, j, block);
+  if (i > j) return;  // (j, i) is its transpose
   if (i == j) {
     if (diagonal_.empty()) diagonal_.resize(2 * kSliceLanes * slices_.size());
     return SymmetricPart(block).AddTo(diagonal_.data() + 2 * static_cast<std::ptrdiff_t>(row_[i]));
@@ -322,6 +325,27 @@ void BlockRows::DisplacementsToRows(const Points& displacements, RowVector& y) c
     const double* const from = displacements.data() + 3 * static_cast<std::ptrdiff_t>(vertices_[row]);
     for (int k = 0; k < kAxes; ++k) y[kAxes * slice + k].at[lane] = static_cast<float>(scale * from[k]);
   }
+}
+
+void BlockRows::RowsToForces(const RowVector& b, Points& forces) const {
+  forces.setZero();
+  for (size_t row = 0; row < vertices_.size(); ++row) {
+    const size_t slice = row / kSliceLanes, lane = row % kSliceLanes;
+    const double scale = 1.0 / slices_.scale[slice].at[lane];
+    double* const to = forces.data() + 3 * static_cast<std::ptrdiff_t>(vertices_[row]);
+    for (int k = 0; k < kAxes; ++k) to[k] = scale * static_cast<double>(b[kAxes * slice + k].at[lane]);
+  }
+}
+
+Eigen::Matrix3d BlockRows::Diagonal(int vertex) const {
+  if (row_[vertex] < 0) return Eigen::Matrix3d::Zero();
+  const size_t slice = static_cast<size_t>(row_[vertex]) / kSliceLanes;
+  const size_t lane = static_cast<size_t>(row_[vertex]) % kSliceLanes;
+  const double scale = slices_.scale[slice].at[lane];
+  const auto entry = [&](size_t k) { return slices_.diagonal[6 * slice + k].at[lane] / (scale * scale); };
+  Eigen::Matrix3d block;
+  block << entry(0), entry(1), entry(2), entry(1), entry(3), entry(4), entry(2), entry(4), entry(5);
+  return block;
 }
 
 void BlockRows::AddDisplacements(double factor, const RowVector& y, Points& displacements) const {

@@ -9,6 +9,7 @@
 #include "server/mechanics/linalg/block_kernel.h"
 #include "server/mechanics/linalg/outer_products.h"
 #include "server/mechanics/model.h"
+#include "server/mechanics/solve/translations.h"
 
 namespace phrenic {
 
@@ -35,6 +36,13 @@ class BlockRows final : public StiffnessSink {
   // Sets q = A p, with or without the inertia, scaled in the same way. Returns p . q.
   double Times(bool inertia, RowVector& q);
   const BlockSlices& slices() const { return slices_; }
+  // Returns the diagonal block of A of a vertex, without blocks that appeared later and outer products; 0 if it does
+  // not move.
+  Eigen::Matrix3d Diagonal(int vertex) const;
+  // Corrects y so that A y has the sum of b over each part that nothing holds. `inertia` and g are those of Assemble.
+  void KeepSums(const Points& b, const Eigen::VectorXd& inertia, Points& y) {
+    translations_.Correct(b, inertia, g_, outer_, shared_, y);
+  }
   size_t row_lanes() const { return kAxes * slices_.size(); }
   OuterProducts& shared_damping() { return shared_; }
 
@@ -43,6 +51,8 @@ class BlockRows final : public StiffnessSink {
   void ForcesToRows(double factor, const Points& forces, RowVector& b) const;
   void AddDisplacements(double factor, const RowVector& y, Points& displacements) const;
   void DisplacementsToRows(const Points& displacements, RowVector& y) const;
+  // Sets forces = b/s; 0 for vertices that do not move.
+  void RowsToForces(const RowVector& b, Points& forces) const;
 
  private:
   struct Call {
@@ -76,6 +86,7 @@ class BlockRows final : public StiffnessSink {
   BlockEntries entries_, diagonal_;  // empty if there are only springs
   std::vector<Extra> extra_;
   OuterProducts outer_, shared_;
+  Translations translations_;
   BlockSlices slices_;
   std::vector<Lanes> inertia_;
   std::vector<Position> positions_;  // of each row

@@ -1,9 +1,13 @@
-// One stage of an implicit integrator: v' = velocity + g f(x', v', t + ahead)/m, x' = position + g v'. Backward Euler,
-// BDF2 and TR-BDF2 are made of such stages.
+// One stage of an implicit integrator: v' = velocity + (g f(x', v', t + ahead) + E m)/m, x' = position + g v', with the
+// impulses E m of links such that x' has their lengths (LinkEquations). Backward Euler, BDF2 and TR-BDF2 are made of
+// such stages. ProjectStage then takes from v' what would change a length: together that is the index-2 form of the
+// equations with links (Gear, Gupta, Leimkuhler, J Comput Appl Math 1985;12:77), for which these methods keep their
+// order.
 #ifndef PHRENIC_SERVER_MECHANICS_SOLVE_IMPLICIT_STAGE_H_
 #define PHRENIC_SERVER_MECHANICS_SOLVE_IMPLICIT_STAGE_H_
 
 #include "absl/status/status.h"
+#include "server/mechanics/solve/link_equations.h"
 #include "server/mechanics/step/step_plan.h"
 
 namespace phrenic {
@@ -33,6 +37,14 @@ void StageResidual(const StepPlan& plan, const ImplicitStage& stage, const EvalC
 // not converge. Allocates in its first call with this `work` only.
 absl::Status SolveStage(const StepPlan& plan, const v1::Parameters& parameters, const ImplicitStage& stage,
                         State& state, Workspace& work);
+
+// Removes from the stage's end what Newton's method has left of gaps, and the velocities along links. `before` are the
+// positions at the start of the step [m].
+void ProjectStage(const StepPlan& plan, const v1::Parameters& parameters, const ImplicitStage& stage,
+                  const Points& before, Workspace& work, State& state);
+
+// Returns the links that a step solves together with the forces; null if there are none or they are switched off.
+LinkEquations* ActingLinks(const StepPlan& plan, const v1::Parameters& parameters, const Scratch& scratch);
 
 }  // namespace phrenic
 

@@ -47,7 +47,7 @@ void ImplicitSystem::Assemble(const Model& model, const EvalContext& at, double 
 absl::Status ImplicitSystem::Solve(const Model& model, const EvalContext& at, const Points& b, double tolerance,
                                    SolverEffort& effort, Points& y) {
   if (!b.allFinite()) return absl::AbortedError("a force is not finite: lower time_step");
-  if (factorised_) return Factorise(model, at, b, y);
+  if (factorised_) return SolveDirectly(model, at, b, y);
   const double unit = StartFrom(b, y);
   if (unit == 0) return absl::OkStatus();
   Progress progress;
@@ -55,9 +55,10 @@ absl::Status ImplicitSystem::Solve(const Model& model, const EvalContext& at, co
   const End end = Iterate(effort, progress);
   if (end == End::kTooLong && !effort.limited()) {
     effort.Note(0, 0);
-    return Factorise(model, at, b, y);
+    return SolveDirectly(model, at, b, y);
   }
   rows_.AddDisplacements(unit, change_, y);
+  KeepSums(b, y);
   effort.Note(progress.iterations, std::sqrt(progress.now / progress.first));
   return absl::OkStatus();
 }
@@ -109,24 +110,40 @@ ImplicitSystem::End ImplicitSystem::Iterate(const SolverEffort& effort, Progress
   return End::kTooLong;
 }
 
-absl::Status ImplicitSystem::Factorise(const Model& model, const EvalContext& at, const Points& b, Points& y) {
-  const Eigen::Index n = b.cols();
-  if (stiffness_ == nullptr) stiffness_ = std::make_unique<BlockMatrix>(model);
+absl::Status ImplicitSystem::SolveDirectly(const Model& model, const EvalContext& at, const Points& b, Points& y) {
   if (!factorised_) {
-    stiffness_->Assemble(model, at, 1 / g_);
-    Eigen::VectorXd free(3 * n), mass(3 * n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      free.segment<3>(3 * i).setConstant(inertia_[i] > 0 ? 1 : 0);
-      mass.segment<3>(3 * i).setConstant(inertia_[i] > 0 ? inertia_[i] : 1);
-    }
-    Eigen::SparseMatrix<double> matrix = free.asDiagonal() * stiffness_->ToSparse() * free.asDiagonal();
-    matrix *= g_ * g_;
-    matrix.diagonal() += mass;
-    if (!factor_.Factorise(matrix)) {
-      return absl::AbortedError("the implicit step's matrix is singular: lower time_step");
-    }
+    if (absl::Status status = FactoriseWith(model, at, {}); !status.ok()) return status;
     factorised_ = true;
   }
+  SolveWith(b, y);
+  KeepSums(b, y);
+  return absl::OkStatus();
+}
+
+absl::Status ImplicitSystem::FactoriseWith(const Model& model, const EvalContext& at,
+                                           const std::vector<Eigen::Triplet<double>>& entries) {
+  const Eigen::Index n = inertia_.size();
+  if (stiffness_ == nullptr) stiffness_ = std::make_unique<BlockMatrix>(model);
+  factorised_ = false;
+  stiffness_->Assemble(model, at, 1 / g_);
+  Eigen::VectorXd free(3 * n), mass(3 * n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    free.segment<3>(3 * i).setConstant(inertia_[i] > 0 ? 1 : 0);
+    mass.segment<3>(3 * i).setConstant(inertia_[i] > 0 ? inertia_[i] : 1);
+  }
+  Eigen::SparseMatrix<double> matrix = free.asDiagonal() * stiffness_->ToSparse() * free.asDiagonal();
+  matrix *= g_ * g_;
+  matrix.diagonal() += mass;
+  if (!entries.empty()) {
+    Eigen::SparseMatrix<double> more(3 * n, 3 * n);
+    more.setFromTriplets(entries.begin(), entries.end());
+    matrix += more;
+  }
+  if (factor_.Factorise(matrix)) return absl::OkStatus();
+  return absl::AbortedError("the implicit step's matrix is singular: lower time_step");
+}
+
+void ImplicitSystem::SolveWith(const Points& b, Points& y) {
   SolveFactored(b, y);
   const auto inverse = [&](const Points& right, Points& left) { SolveFactored(right, left); };
   stiffness_->outer().Correct(g_ * g_, inverse, y);
@@ -136,7 +153,13 @@ absl::Status ImplicitSystem::Factorise(const Model& model, const EvalContext& at
     stiffness_->outer().Correct(g_ * g_, inverse, left);
   };
   rows_.shared_damping().Correct(g_, stiffened, y);
-  return absl::OkStatus();
+}
+
+void ImplicitSystem::Times(bool whole, const Points& p, Points& q) {
+  rows_.DisplacementsToRows(p, product_);
+  rows_.Face(product_);
+  rows_.Times(whole, product_);
+  rows_.RowsToForces(product_, q);
 }
 
 void ImplicitSystem::SolveFactored(const Points& b, Points& y) const {

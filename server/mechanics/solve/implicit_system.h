@@ -4,7 +4,9 @@
 #ifndef PHRENIC_SERVER_MECHANICS_SOLVE_IMPLICIT_SYSTEM_H_
 #define PHRENIC_SERVER_MECHANICS_SOLVE_IMPLICIT_SYSTEM_H_
 
+#include <Eigen/SparseCore>
 #include <memory>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "server/mechanics/linalg/sparse_ldlt.h"
@@ -17,8 +19,9 @@ namespace phrenic {
 // Conjugate gradients, preconditioned by the inverse diagonal blocks (Baraff and Witkin 1998, with their filter for
 // fixed vertices). A sparse factorisation takes over if they need too many iterations, as they do if stiffnesses differ
 // by orders of magnitude. The iterations run in single precision on the residual of the first guess, which is computed
-// in double: y is accurate to 1e-6 of that, so that no relative residual below kFinest can be reached. Not thread-safe.
-// Allocates when it is made and when it factorises.
+// in double: y is accurate to 1e-6 of that, so that no relative residual below kFinest can be reached. The sum of the
+// residual over each part that nothing holds is zero to rounding (Translations). Not thread-safe. Allocates when it is
+// made and when it factorises.
 class ImplicitSystem {
  public:
   static constexpr double kFinest = 1e-6;
@@ -34,6 +37,20 @@ class ImplicitSystem {
   absl::Status Solve(const Model& model, const EvalContext& at, const Points& b, double tolerance, SolverEffort& effort,
                      Points& y);
 
+  // For LinkedSystem, which adds links to the system.
+  //
+  // Sets q = A p on the free vertices, 0 on others, in single precision; without the diagonal inertia() of A if not
+  // `whole`.
+  void Times(bool whole, const Points& p, Points& q);
+  const Eigen::VectorXd& inertia() const { return inertia_; }
+  Eigen::Matrix3d Diagonal(int vertex) const { return rows_.Diagonal(vertex); }
+  // Corrects y as Solve does.
+  void KeepSums(const Points& b, Points& y) { rows_.KeepSums(b, inertia_, y); }
+  // Factorises A plus these entries [kg] on the free vertices, and sets y to the inverse of that times b.
+  absl::Status FactoriseWith(const Model& model, const EvalContext& at,
+                             const std::vector<Eigen::Triplet<double>>& entries);
+  void SolveWith(const Points& b, Points& y);
+
  private:
   enum class End { kSolved, kSpent, kTooLong };
   struct Progress {
@@ -43,7 +60,7 @@ class ImplicitSystem {
   double StartFrom(const Points& b, Points& y);
   void Begin(double tolerance, Progress& progress);
   End Iterate(const SolverEffort& effort, Progress& progress);
-  absl::Status Factorise(const Model& model, const EvalContext& at, const Points& b, Points& y);
+  absl::Status SolveDirectly(const Model& model, const EvalContext& at, const Points& b, Points& y);
   void SolveFactored(const Points& b, Points& y) const;
 
   BlockRows rows_;

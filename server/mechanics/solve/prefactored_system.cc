@@ -19,7 +19,7 @@ double Weight(const Eigen::Matrix3d& block) {
 
 }  // namespace
 
-PrefactoredSystem::PrefactoredSystem(const Model& model) : stiffness_(model) {
+PrefactoredSystem::PrefactoredSystem(const Model& model) : translations_(model), stiffness_(model) {
   const int n = stiffness_.vertices();
   for (int i = 0; i < n; ++i) free_.push_back(model.inverse_mass[i] > 0);
   std::vector<std::pair<int, int>> below;
@@ -71,9 +71,12 @@ void PrefactoredSystem::Assemble(const Model& model, const EvalContext& at) {
   Eigen::VectorXd diagonal(diagonal_.size());
   SumDamping(model, at, diagonal);
   diagonal = model.mass + g_ * diagonal;
+  inertia_ = diagonal;
   std::vector<Eigen::Matrix3d> grounded(free_.size(), Eigen::Matrix3d::Zero());
   auto place = place_.begin();
+  translations_.Begin();
   stiffness_.ForEachBlock([&](int i, int j, const Eigen::Matrix3d& block) {
+    if (!translations_.empty() && free_[i] && free_[j]) translations_.Add(i, j, block);
     grounded[i] += block;
     if (j <= i) return;
     const double weight = g_ * g_ * Weight(-block);
@@ -102,6 +105,12 @@ void PrefactoredSystem::Solve(const Points& b, Points& y) {
   SolvePlain(b, y);
   stiffness_.outer().CorrectPrepared(g_ * g_, y);
   shared_damping_.CorrectPrepared(g_, y);
+}
+
+void PrefactoredSystem::KeepSums(const Points& r, Points& v) {
+  shift_.setZero(3, v.cols());
+  translations_.Correct(r, inertia_, g_, stiffness_.outer(), shared_damping_, shift_);
+  v += shift_;
 }
 
 void PrefactoredSystem::SolvePlain(const Points& b, Points& y) {

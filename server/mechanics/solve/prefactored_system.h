@@ -12,6 +12,7 @@
 
 #include "server/mechanics/linalg/sparse_ldlt.h"
 #include "server/mechanics/solve/block_matrix.h"
+#include "server/mechanics/solve/translations.h"
 
 namespace phrenic {
 
@@ -24,6 +25,13 @@ class PrefactoredSystem {
   void Prepare(const Model& model, const v1::Parameters& parameters, double g);
   // Sets y = A^-1 b, both 3 x n; 0 for fixed and driven vertices. Does not allocate.
   void Solve(const Points& b, Points& y);
+  // Changes v so that the residual r [N s] of v has no sum over any part that nothing holds and no force ties to a
+  // place (Translations).
+  void KeepSums(const Points& r, Points& v);
+  // True if there is no such part.
+  bool AllHeld() const { return translations_.empty(); }
+  // Sets `mean` to the mean velocity of each such part, 0 elsewhere.
+  void MeanVelocity(const Points& v, Points& mean) { translations_.Mean(inertia_, v, mean); }
   // Returns g of the last Prepare; 0 before the first.
   double g() const { return g_; }
 
@@ -34,6 +42,8 @@ class PrefactoredSystem {
   void SolvePlain(const Points& b, Points& y);
 
   double g_ = 0;
+  Translations translations_;
+  Eigen::VectorXd inertia_;  // m + g c
   std::string key_, asked_;  // the parameters of the present matrix, and those requested, serialised
   BlockMatrix stiffness_;
   OuterProducts shared_damping_;
@@ -45,6 +55,7 @@ class PrefactoredSystem {
   Eigen::VectorXd diagonal_;    // in the order of elimination
   std::vector<double> values_;  // below the diagonal
   Points right_;                // in the order of elimination
+  Points shift_;
 };
 
 }  // namespace phrenic

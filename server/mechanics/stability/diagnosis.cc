@@ -7,6 +7,7 @@
 #include "absl/strings/str_format.h"
 #include "server/mechanics/constraint_residual.h"
 #include "server/mechanics/stability/largest_step.h"
+#include "server/mechanics/step/loose_parts.h"
 
 namespace phrenic {
 namespace {
@@ -32,27 +33,42 @@ int FurthestVertex(const Model& model, const State& state) {
   return furthest;
 }
 
-std::string LargestForceOn(const Model& model, const v1::Parameters& parameters, const State& state, int vertex) {
+// The largest force on a vertex.
+struct Cause {
+  std::string name = "no force", kind;
+  double newtons = 0;
+};
+
+Cause LargestForceOn(const Model& model, const v1::Parameters& parameters, const State& state, int vertex) {
   const EvalContext at = MakeEvalContext(model, parameters, state);
   Points force(3, state.x.cols());
-  std::string name = "no force";
-  double largest = -1;
-  for (const auto& element : model.forces) {
+  Cause largest;
+  for (size_t i = 0; i < model.forces.size(); ++i) {
     force.setZero();
-    element->AddForce(at, force);
+    model.forces[i]->AddForce(at, force);
     const double size = force.col(vertex).norm();
-    if (size > largest) {
-      largest = size;
-      name = element->name();
-    }
+    if (size > largest.newtons)
+      largest = {model.forces[i]->name(), i < model.force_kinds.size() ? model.force_kinds[i] : "", size};
   }
   for (const VertexPull& pull : state.pulls) {
-    if (pull.vertex == vertex && pull.force.norm() > largest) name = "pull";
+    if (pull.vertex == vertex && pull.force.norm() > largest.newtons) largest = {"pull", "pull", pull.force.norm()};
   }
-  return name;
+  return largest;
 }
 
-std::string Remedy(const Model& model, const v1::Parameters& parameters, const State& before) {
+// What lessens a force of this kind.
+std::string Lessen(const std::string& kind) {
+  if (kind == "action_line" || kind == "fibres") return "lower breath_force or raise elasticity";
+  if (kind == "pull") return "release the pull";
+  if (kind == "gravity") return "hold some vertices, lower its acceleration or raise elasticity";
+  if (kind == "pressure" || kind == "lungs") return "lower its pressure or raise elasticity";
+  if (kind == "contact") return "lower its load, raise its depth, or move the surface less";
+  if (kind == "point_load" || kind == "target_spring" || kind == "attachment") return "lower it or raise elasticity";
+  return "lower the loads that stretch it, or lower time_step";
+}
+
+std::string Remedy(const Model& model, const v1::Parameters& parameters, const State& before, const State& diverged,
+                   int vertex, const Cause& cause) {
   if (!before.x.allFinite() || !before.v.allFinite()) {
     return "a position or velocity was no number even before the step: reset";
   }
@@ -69,10 +85,17 @@ std::string Remedy(const Model& model, const v1::Parameters& parameters, const S
         "elasticity, then reset",
         parameters.time_step(), stable, 0.9 * stable);
   }
+  if (LooseParts(model).of[vertex] >= 0) {
+    const double sizes = std::sqrt(DistanceFromRest(model, diverged, vertex)) / model.size;
+    return absl::StrFormat(
+        "nothing holds this part of the body, and %s has moved it %.3g sizes of the scene away: fix some of its "
+        "vertices, join them by springs to others, or take them out, then reset",
+        cause.newtons > 0 ? cause.name : "its velocity", sizes);
+  }
   return absl::StrFormat(
-      "the time step is below the stable limit at rest (%.3g s), so the load is too large for the tissue: lower "
-      "breath_force or raise elasticity, then reset",
-      stable);
+      "the time step is below the stable limit at rest (%.3g s), so the load is too large for the tissue: %s, then "
+      "reset",
+      stable, cause.newtons > 0 ? Lessen(cause.kind) : "lower time_step");
 }
 
 }  // namespace
@@ -86,8 +109,10 @@ v1::Divergence Diagnose(const Model& model, const v1::Parameters& parameters, co
   divergence.set_tick(diverged.tick);
   divergence.set_body(body.name);
   divergence.set_vertex(vertex - body.first_vertex);
-  divergence.set_force(LargestForceOn(model, parameters, before, vertex));
-  divergence.set_remedy(absl::IsAborted(why) ? std::string(why.message()) : Remedy(model, parameters, before));
+  const Cause cause = LargestForceOn(model, parameters, before, vertex);
+  divergence.set_force(cause.name);
+  divergence.set_remedy(absl::IsAborted(why) ? std::string(why.message())
+                                             : Remedy(model, parameters, before, diverged, vertex, cause));
   return divergence;
 }
 

@@ -1,6 +1,7 @@
 #include "server/mechanics/step/bounds.h"
 
 #include "server/mechanics/linalg/vertex_kernel.h"
+#include "server/mechanics/step/loose_parts.h"
 
 namespace phrenic {
 namespace {
@@ -21,7 +22,37 @@ StateBounds MeasureAll(const State& state, Workspace& work) {
   return LargestComponent(work.bounds);
 }
 
+// The mean position of each part, which is its centre for equal masses.
+Points CentresOf(const LooseParts& parts, const ConstPoints& x) {
+  Points centres = Points::Zero(3, parts.count);
+  Eigen::VectorXd vertices = Eigen::VectorXd::Zero(parts.count);
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    const int part = parts.of[i];
+    if (part < 0) continue;
+    centres.col(part) += x.col(i);
+    vertices[part] += 1;
+  }
+  return centres * vertices.cwiseInverse().asDiagonal();
+}
+
+bool WithinOfCentres(const Model& model, const LooseParts& parts, const ConstPoints& x) {
+  const Points centres = CentresOf(parts, x);
+  if (!(centres.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFurthestFall * model.bound)) return false;
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    const int part = parts.of[i];
+    const Eigen::Vector3d from = part < 0 ? Eigen::Vector3d(x.col(i)) : Eigen::Vector3d(x.col(i) - centres.col(part));
+    if (!(from.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= model.bound)) return false;
+  }
+  return true;
+}
+
 }  // namespace
+
+bool PositionsWithinBounds(const Model& model, const ConstPoints& x) {
+  if (x.cols() == 0 || x.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= model.bound) return true;
+  const LooseParts parts(model);
+  return parts.count > 0 && WithinOfCentres(model, parts, x);
+}
 
 void ResizeBounds(Workspace& work) {
   work.bounds.resize(static_cast<size_t>(CountBlocks(work.force.cols())) + 1);
@@ -50,7 +81,11 @@ bool WithinBounds(const Model& model, double dt, const State& state, Workspace& 
     return bounds.furthest <= model.bound && bounds.fastest <= 2 * model.bound / dt;
   };
   if (!work.bounds.empty() && within(LargestComponent(work.bounds))) return true;
-  return within(MeasureAll(state, work));
+  const StateBounds measured = MeasureAll(state, work);
+  if (within(measured)) return true;
+  if (!(measured.fastest <= 2 * model.bound / dt)) return false;
+  const auto& parts = work.scratch.Get<LooseParts>(model);
+  return parts.count > 0 && WithinOfCentres(model, parts, state.x);
 }
 
 }  // namespace phrenic

@@ -4,6 +4,7 @@
 
 #include "server/mechanics/step/adaptive_step.h"
 #include "server/mechanics/step/bounds.h"
+#include "server/mechanics/step/combination.h"
 #include "server/mechanics/step/step_plan.h"
 
 namespace phrenic {
@@ -19,6 +20,9 @@ void CopyStart(const StepPlan& plan, const State& state, Workspace& work) {
 
 absl::Status Advance(const StepPlan& plan, const v1::Parameters& parameters, double dt, State& state, Workspace& work) {
   const Integrator& integrator = plan.FindIntegrator(parameters);
+  if (absl::Status runs = CheckCombination(plan.model(), integrator, parameters); !runs.ok()) {
+    return absl::AbortedError(runs.message());
+  }
   if (parameters.step_tolerance() > 0 && integrator.order() > 0) {
     return AdvanceAdaptively(plan, parameters, dt, state, work);
   }

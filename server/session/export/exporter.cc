@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/mechanics/constraint_residual.h"
 #include "server/mechanics/skinning/body_points.h"
 #include "server/record/recorder.h"
 #include "server/schema/thread_cpu.h"
@@ -49,10 +50,25 @@ class MotionExport {
     summary.set_step_wall_seconds(step_wall_);
     summary.set_step_cpu_seconds(step_cpu_);
     summary.set_state_hash(HashText(run_.state()));
+    summary.set_end_time(run_.state().time);
+    summary.set_end_tick(run_.state().tick);
+    if (model_.constraints.empty()) return;
+    const ConstraintResidual residual = WorstResidual();
+    summary.set_constraint_residual(residual.metres);
+    summary.set_residual_constraint(std::string(residual.constraint));
+    if (std::string warning = ResidualWarning(model_, residual); !warning.empty()) {
+      summary.add_warnings(std::move(warning));
+    }
   }
 
  private:
   double end() const { return plan_.start + plan_.seconds; }
+
+  // Of the frames and of the present state.
+  ConstraintResidual WorstResidual() const {
+    const ConstraintResidual now = LargestResidual(model_, run_.state());
+    return now.metres > worst_.metres ? now : worst_;
+  }
 
   absl::Status Begin() {
     PlaceBodies();
@@ -81,6 +97,7 @@ class MotionExport {
   absl::Status AddFrame() {
     PlaceBodies();
     ++frames_;
+    worst_ = WorstResidual();
     std::vector<double> numbers;
     if (plan_.format.numbers_only) numbers = NumbersAt(model_, run_.parameters(), run_.state());
     return recorder_.AddFrame({run_.state().time, positions_, numbers});
@@ -143,6 +160,7 @@ class MotionExport {
   const ExportProgress& progress_;
   const double begin_;  // simulated time at which stepping began [s]
   Points positions_;
+  ConstraintResidual worst_;
   Wall::time_point last_report_ = Wall::now();
   std::int64_t frames_ = 0, steps_ = 0;
   double step_wall_ = 0, step_cpu_ = 0;

@@ -33,13 +33,20 @@ export function banners(
     unsaved.hidden = why === "";
     unsaved.replaceChildren(make("p", {}, unsavedText(why)));
   });
+  const warned = banner("status", "warned");
+  controller.session.subscribe((session) => {
+    const text = (session?.warnings ?? []).map(sentence).join(" ");
+    if (warned.textContent === text) return;
+    warned.hidden = text === "";
+    warned.replaceChildren(make("p", {}, text));
+  });
   const notice = banner("status", "notice");
   controller.notice.subscribe((text) => {
     notice.hidden = text === "";
     const dismiss = make("button", { type: "button", onclick: () => controller.notice.set("") }, "Dismiss");
     notice.replaceChildren(make("p", {}, sentence(text)), dismiss);
   });
-  return [diverged, lost, unsaved, notice];
+  return [diverged, lost, unsaved, warned, notice];
 }
 
 function unsavedText(why: string): string {
