@@ -20,8 +20,7 @@ namespace phrenic::anatomy {
 absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm, v1::Sheet sheet = v1::SHEET_UNSPECIFIED);
 
 // Returns about how many vertices Generate gives, without generating; 0 for a part that does not exist.
-std::int64_t EstimateVertices(const v1::Anatomy& part, double resolution_mm,
-                              v1::Sheet sheet = v1::SHEET_UNSPECIFIED);
+std::int64_t EstimateVertices(const v1::Anatomy& part, double resolution_mm, v1::Sheet sheet = v1::SHEET_UNSPECIFIED);
 
 }  // namespace phrenic::anatomy
 

@@ -1,10 +1,9 @@
 #include "server/mechanics/model.h"
 
-#include "server/mechanics/breath_signal.h"
-
 #include <cmath>
 #include <numbers>
 
+#include "server/mechanics/breath_signal.h"
 #include "server/mechanics/parallel/vertex_range.h"
 
 namespace phrenic {

@@ -77,8 +77,8 @@ SizeSource MakeSizeSource(std::string data_dir, const std::vector<Uploads::Held>
   for (const Uploads::Held& upload : uploads) sizes[upload.file.path()] = upload.file.size;
   return [data_dir = std::move(data_dir), sizes = std::move(sizes)](const v1::Body& body) {
     if (body.has_generated()) {
-      return Surface(anatomy::EstimateVertices(body.anatomy(), body.generated().resolution_mm(),
-                                               body.generated().sheet()));
+      return Surface(
+          anatomy::EstimateVertices(body.anatomy(), body.generated().resolution_mm(), body.generated().sheet()));
     }
     if (const auto found = sizes.find(body.file().path()); found != sizes.end()) {
       return Surface(found->second / kFileBytesPerVertex);

@@ -14,7 +14,8 @@ namespace phrenic {
 // Returns a rib as a strip from its head at the back to its end at the front, at a height [m].
 inline std::string RibText(int number, bool right, double z) {
   std::string text = absl::StrFormat(
-      "bodies { name: 'rib-%d-%s' layer: 'ribs' role: ROLE_DRIVEN anatomy { structure: STRUCTURE_RIB number: %d side: %s "
+      "bodies { name: 'rib-%d-%s' layer: 'ribs' role: ROLE_DRIVEN anatomy { structure: STRUCTURE_RIB number: %d side: "
+      "%s "
       "} polyhedron { ",
       number, right ? "right" : "left", number, right ? "SIDE_RIGHT" : "SIDE_LEFT");
   constexpr int kPoints = 9;
@@ -22,7 +23,8 @@ inline std::string RibText(int number, bool right, double z) {
     const double angle = std::numbers::pi * (0.08 + 0.84 * i / (kPoints - 1));  // from the back to the front
     const double x = (right ? -0.108 : 0.108) * std::sin(angle), y = 0.108 * std::cos(angle);
     for (const double up : {0.0, 0.004}) {
-      absl::StrAppendFormat(&text, "vertices { x: %.9g y: %.9g z: %.9g } ", x, y, z + up - 0.04 * std::sin(angle) - 0.02 * i / (kPoints - 1));
+      absl::StrAppendFormat(&text, "vertices { x: %.9g y: %.9g z: %.9g } ", x, y,
+                            z + up - 0.04 * std::sin(angle) - 0.02 * i / (kPoints - 1));
     }
   }
   for (int i = 0; i + 1 < kPoints; ++i) {

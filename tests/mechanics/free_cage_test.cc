@@ -42,8 +42,8 @@ Points ForceOf(const Model& model, const State& state) {
   return f;
 }
 
-// The work of the forces on a small displacement of free vertices and coordinates, in which inserted vertices follow, is
-// the loss of energy: reactions at the insertion and contact forces reach the cage.
+// The work of the forces on a small displacement of free vertices and coordinates, in which inserted vertices follow,
+// is the loss of energy: reactions at the insertion and contact forces reach the cage.
 void ExpectVirtualWork(const std::string& forces, double tolerance) {
   const auto model = CompileText(FreeCage(forces));
   ASSERT_NE(model, nullptr);

@@ -9,9 +9,9 @@
 namespace phrenic {
 namespace {
 
-constexpr int kTurns = 96, kHeights = 48;   // of the table
-constexpr double kLeastRadius = 1e-6;       // below it a point has no turn [m]
-constexpr int kLevels = 60;                 // of the wall between a loop and its top
+constexpr int kTurns = 96, kHeights = 48;  // of the table
+constexpr double kLeastRadius = 1e-6;      // below it a point has no turn [m]
+constexpr int kLevels = 60;                // of the wall between a loop and its top
 
 // A measure of the azimuth, in [0, 4), and its derivatives by x and y.
 struct Turn {
@@ -40,7 +40,8 @@ struct Cell {
 
 Cell CellAt(double turn, double height) {
   const double column = turn * (kTurns / 4), row = std::clamp(height * (kHeights - 1), 0.0, kHeights - 1.0);
-  const int left = std::min(static_cast<int>(column), kTurns - 1), below = std::min(static_cast<int>(row), kHeights - 2);
+  const int left = std::min(static_cast<int>(column), kTurns - 1),
+            below = std::min(static_cast<int>(row), kHeights - 2);
   const int right = left + 1 < kTurns ? left + 1 : 0, low = below * kTurns, high = low + kTurns;
   return {low + left, low + right, high + left, high + right, column - left, row - below, height > 0 && height < 1};
 }
@@ -127,8 +128,7 @@ WallGap InnerWall::Gap(const WallTable& table, const Eigen::Vector3d& point) con
 
 InnerWall::Follower InnerWall::Follow(const Eigen::Vector3d& point) const {
   const PolarPoint polar = grid_.Polar(point);
-  const GridCoordinates there =
-      grid_.Locate(rest_, polar.azimuth, polar.z, grid_.Guess(rest_, polar.azimuth, polar.z));
+  const GridCoordinates there = grid_.Locate(rest_, polar.azimuth, polar.z, grid_.Guess(rest_, polar.azimuth, polar.z));
   const Eigen::Vector3d from = grid_.At(rest_, there);
   const CageFit fit;
   Follower follower;

@@ -3,9 +3,9 @@
 // measure of the azimuth: with X = x and Y from the axis to the front, X/(|X| + |Y|) in the front right quarter, and so
 // on around, so that no step needs a trigonometric function.
 //
-// The wall is a polar grid that is skinned to the cage's bones. It is placed at nine positions of the cage; at each, the
-// radius is read where the table has its turns and heights, and a quadratic is fitted (cage_quadratic.h). Between the
-// entries of the table R is bilinear.
+// The wall is a polar grid that is skinned to the cage's bones. It is placed at nine positions of the cage; at each,
+// the radius is read where the table has its turns and heights, and a quadratic is fitted (cage_quadratic.h). Between
+// the entries of the table R is bilinear.
 #ifndef PHRENIC_SERVER_MECHANICS_BREATHING_INNER_WALL_H_
 #define PHRENIC_SERVER_MECHANICS_BREATHING_INNER_WALL_H_
 
@@ -66,10 +66,10 @@ class InnerWall {
   void Tabulate();
 
   WallGrid grid_;
-  Points rest_;                // [m]
-  std::vector<Points> moved_;  // [m]
-  double bottom_ = 0, height_ = 0;  // of the table [m]
-  std::vector<double> radius_;      // at rest [m], one per entry
+  Points rest_;                                // [m]
+  std::vector<Points> moved_;                  // [m]
+  double bottom_ = 0, height_ = 0;             // of the table [m]
+  std::vector<double> radius_;                 // at rest [m], one per entry
   std::array<std::vector<double>, 5> change_;  // coefficients of the quadratics, one per entry
 };
 

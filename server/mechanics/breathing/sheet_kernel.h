@@ -1,5 +1,5 @@
-// SIMD kernel of the area vectors of a sheet (thorax_pressures.h), eight triangles at a time. Google Highway compiles it
-// for several instruction sets and selects the best one at run time. The results are bitwise equal on all of them.
+// SIMD kernel of the area vectors of a sheet (thorax_pressures.h), eight triangles at a time. Google Highway compiles
+// it for several instruction sets and selects the best one at run time. The results are bitwise equal on all of them.
 #ifndef PHRENIC_SERVER_MECHANICS_BREATHING_SHEET_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_BREATHING_SHEET_KERNEL_H_
 
@@ -14,7 +14,7 @@ namespace phrenic {
 // Triangles right of the midline and left of it, and the triangles around each vertex.
 struct SheetLayout {
   std::array<std::vector<TrianglePacket>, 2> packets;  // right, left
-  std::vector<std::int32_t> first;   // of each vertex in `around`, and the end
+  std::vector<std::int32_t> first;                     // of each vertex in `around`, and the end
   std::vector<std::int32_t> around;  // offsets in the array of areas [doubles]: four times the triangle's place
   int first_vertex = 0;              // simulated
 
@@ -33,8 +33,8 @@ struct LinearField {
 std::array<double, 2> SetAreas(const SheetLayout& layout, const double* x, const double* apex, const LinearField& field,
                                double* areas);
 
-// Sets `slopes`, 3 x the sheet's vertices, to the sum s_i of the areas around each vertex [m^2], and `push`, the same, to
-// the forces of a pressure p(x) [Pa]: (s_i p(x_i) + 3 sum of area times mean p)/4 [N].
+// Sets `slopes`, 3 x the sheet's vertices, to the sum s_i of the areas around each vertex [m^2], and `push`, the same,
+// to the forces of a pressure p(x) [Pa]: (s_i p(x_i) + 3 sum of area times mean p)/4 [N].
 void GatherAreas(const SheetLayout& layout, const double* areas, const double* x, const LinearField& field,
                  double* slopes, double* push);
 

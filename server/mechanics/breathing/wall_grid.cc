@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kSameHeight = 1e-6;  // [m]
-constexpr int kAxisTries = 20;             // places of the axis that are tried
+constexpr int kAxisTries = 20;        // places of the axis that are tried
 constexpr int kLocateSteps = 25;
-constexpr double kLocated = 1e-7;  // of a column and a row
+constexpr double kLocated = 1e-7;   // of a column and a row
 constexpr double kMostColumns = 3;  // of columns in a step of Newton's method
 
 double Wrapped(double angle) { return angle - kTurn * std::floor((angle + std::numbers::pi) / kTurn); }

@@ -14,7 +14,7 @@ struct GridCoordinates {
 
 // Where a point lies around the axis.
 struct PolarPoint {
-  double azimuth = 0;  // [rad] from the front (-y) towards +x, in [0, 2 pi)
+  double azimuth = 0;        // [rad] from the front (-y) towards +x, in [0, 2 pi)
   double z = 0, radius = 0;  // [m]
 };
 

@@ -23,9 +23,8 @@ void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
     return has_force([side](const v1::Force& force) { return force.action_line().side() == side; });
   };
   const bool ribs = Any(scene.motions(), [](const v1::Motion& motion) { return motion.has_ribs(); });
-  const bool driven = Any(scene.motions(), [](const v1::Motion& motion) {
-    return motion.has_ribs() && !motion.ribs().has_free();
-  });
+  const bool driven =
+      Any(scene.motions(), [](const v1::Motion& motion) { return motion.has_ribs() && !motion.ribs().has_free(); });
   const bool muscle = has_force([](const v1::Force& force) { return force.has_muscle(); });
   const bool cage = has_force([](const v1::Force& force) { return force.has_chest_wall(); });
   const bool thorax = has_force([](const v1::Force& force) { return force.has_thorax_pressures(); });

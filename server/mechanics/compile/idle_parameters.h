@@ -2,8 +2,8 @@
 #ifndef PHRENIC_SERVER_MECHANICS_COMPILE_IDLE_PARAMETERS_H_
 #define PHRENIC_SERVER_MECHANICS_COMPILE_IDLE_PARAMETERS_H_
 
-#include "phrenic/v1/scene.pb.h"
 #include "phrenic/v1/report.pb.h"
+#include "phrenic/v1/scene.pb.h"
 
 namespace phrenic {
 

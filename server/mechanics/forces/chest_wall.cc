@@ -28,15 +28,17 @@ absl::StatusOr<std::unique_ptr<Force>> ChestWall::Make(const v1::ChestWall& scen
     handle.coordinate = *coordinates[i];
     handle.stiffness = slope[static_cast<Eigen::Index>(i)] * slope.sum() / scene.compliance();
     handle.share = i == 0 ? scene.pump_share() : scene.bucket_share();
-    const double inertia = builder.model.mass[handle.coordinate.vertex] * handle.coordinate.scale * handle.coordinate.scale;
+    const double inertia =
+        builder.model.mass[handle.coordinate.vertex] * handle.coordinate.scale * handle.coordinate.scale;
     handle.damping = scene.damping_rate() * inertia;
     if (!(handle.stiffness > 0)) {
       return FieldError(path, absl::StrCat("the volume inside the wall does not grow with the ", handle.coordinate.name,
                                            ": check the ribs' end states"));
     }
   }
-  builder.ReportElement("force", force->name(), 2, "coordinates",
-                        absl::StrFormat("K = %.3g and %.3g J", force->handles_[0].stiffness, force->handles_[1].stiffness));
+  builder.ReportElement(
+      "force", force->name(), 2, "coordinates",
+      absl::StrFormat("K = %.3g and %.3g J", force->handles_[0].stiffness, force->handles_[1].stiffness));
   return force;
 }
 

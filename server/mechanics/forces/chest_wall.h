@@ -2,13 +2,13 @@
 // handle, with V_k = dV/dk at rest, V the volume inside the wall above the insertion [m^3]:
 //   Q = Q_rest - K k - c M k' + K s a (1 - l (k_pump + k_bucket)/2)  [J],  K = V_k (V_pump + V_bucket)/C  [J],
 // so that at a pressure p inside both coordinates move alike and the volume by p C. Below rest K is several times
-// larger; the live parameter chest_wall_compliance divides both. M is the coordinate's inertia, s the muscles' share and l
-// their loss of force by shortening. Q_rest balances all other forces at rest. a is the live parameter
+// larger; the live parameter chest_wall_compliance divides both. M is the coordinate's inertia, s the muscles' share
+// and l their loss of force by shortening. Q_rest balances all other forces at rest. a is the live parameter
 // intercostal_activation, times breath_force, rib_motion and the breath's signal, less expiratory_activation times the
 // share of the expiratory muscles; muscle_strength scales it, and pump_handle and bucket_handle the two shares.
 //   E = sum K k^2/2 - Q_rest k  [J].
-// Compliance of the relaxed chest wall without the abdomen: breathing mechanics texts; the split between pump and bucket
-// as the ribs' table makes it.
+// Compliance of the relaxed chest wall without the abdomen: breathing mechanics texts; the split between pump and
+// bucket as the ribs' table makes it.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_CHEST_WALL_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_CHEST_WALL_H_
 

@@ -7,8 +7,9 @@
 // harmonic function from one region to the tendon (Bayer et al. 2012). Force-velocity acts through the low-passed mean
 // rate of each bundle of fibres (breathing/fibre_bundles.h), State::scalars that this force advances. The activation of
 // a side follows the live parameters diaphragm_activation breath_force times the breath's signal where positive, times
-// right_activation or left_activation, with a time constant; muscle_strength scales its force; elasticity scales stiffnesses, not tensions. With balanced_at_rest the resting tensions are chosen
-// to hold the other forces at rest (muscle_prestress.h).
+// right_activation or left_activation, with a time constant; muscle_strength scales its force; elasticity scales
+// stiffnesses, not tensions. With balanced_at_rest the resting tensions are chosen to hold the other forces at rest
+// (muscle_prestress.h).
 //
 // Energy is that at fixed activation and rates. The stiffness leaves out negative terms.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_MUSCLE_H_
@@ -89,8 +90,8 @@ class Muscle final : public Force {
   std::vector<MuscleTriangle> triangles_;
   FibreBundles bundles_;
   int first_activation_ = -1;  // index in State::scalars of the right side's activation; -1: it is not a state
-  int first_rate_ = -1;  // index in State::scalars of the rate of the first bundle
-  int origin_ = 0;       // the vertex that positions are relative to in single precision
+  int first_rate_ = -1;        // index in State::scalars of the rate of the first bundle
+  int origin_ = 0;             // the vertex that positions are relative to in single precision
   Layout layout_;
   Points rest_load_;  // 3 x the body's vertices [N]; no columns unless balanced at rest
 };

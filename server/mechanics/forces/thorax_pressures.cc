@@ -12,20 +12,20 @@ namespace phrenic {
 namespace {
 
 constexpr std::array<Force::Output, 8> kThoraxOutputs = {{{"volume", "m^3"},
-                                                            {"flow", "m^3/s"},
-                                                            {"pleural_pressure_right", "Pa"},
-                                                            {"pleural_pressure_left", "Pa"},
-                                                            {"abdominal_pressure", "Pa"},
-                                                            {"transdiaphragmatic_pressure", "Pa"},
-                                                            {"alveolar_pressure", "Pa"},
-                                                            {"displaced_volume", "m^3"}}};
+                                                          {"flow", "m^3/s"},
+                                                          {"pleural_pressure_right", "Pa"},
+                                                          {"pleural_pressure_left", "Pa"},
+                                                          {"abdominal_pressure", "Pa"},
+                                                          {"transdiaphragmatic_pressure", "Pa"},
+                                                          {"alveolar_pressure", "Pa"},
+                                                          {"displaced_volume", "m^3"}}};
 constexpr double kLeastRoom = 0.02;  // of a lung's room: the curve continues along its tangent below
 
-constexpr double kActivationTime = 0.1;       // of the expiratory muscles [s]
-constexpr double kAtmosphere = 101325;        // [Pa]
-constexpr double kClosingRange = 0.3;         // of the closing volume, over which the airways of a lung close
-constexpr double kMostClosed = 1000;          // the resistance of closed airways over that of open ones
-constexpr double kCollapsed = 0.3;            // volume of a collapsed lung, of that at rest
+constexpr double kActivationTime = 0.1;  // of the expiratory muscles [s]
+constexpr double kAtmosphere = 101325;   // [Pa]
+constexpr double kClosingRange = 0.3;    // of the closing volume, over which the airways of a lung close
+constexpr double kMostClosed = 1000;     // the resistance of closed airways over that of open ones
+constexpr double kCollapsed = 0.3;       // volume of a collapsed lung, of that at rest
 
 double WithSign(size_t side) { return side == 0 ? 1 : -1; }
 
@@ -394,7 +394,8 @@ double ThoraxPressures::EnergyOfWeight(const EvalContext& at) const {
   for (const auto& packets : sheet_.packets) {
     for (const TrianglePacket& packet : packets) {
       for (int lane = 0; lane < kPacketTriangles; ++lane) {
-        const Eigen::Vector3d a = x.col(packet.a[lane] / 3), b = x.col(packet.b[lane] / 3), c = x.col(packet.c[lane] / 3);
+        const Eigen::Vector3d a = x.col(packet.a[lane] / 3), b = x.col(packet.b[lane] / 3),
+                              c = x.col(packet.c[lane] / 3);
         const double cone = (a - wall_->apex).dot((b - a).cross(c - a)) / 6;
         energy -= cone * (slope.dot(wall_->apex + a + b + c) / 4 - weight.offset);
       }
@@ -428,8 +429,8 @@ double ThoraxPressures::Read(size_t output, const EvalContext& at) const {
     case 5:
       return now.abdominal - pleural;
     case 6:
-      return AirwayPressure(at, now) - now.common * Flow(now) - (now.peripheral[kRight] * now.flow[kRight] +
-                                                            now.peripheral[kLeft] * now.flow[kLeft]);
+      return AirwayPressure(at, now) - now.common * Flow(now) -
+             (now.peripheral[kRight] * now.flow[kRight] + now.peripheral[kLeft] * now.flow[kLeft]);
     default:
       return now.displaced;
   }

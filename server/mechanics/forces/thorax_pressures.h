@@ -1,18 +1,18 @@
 // The pressures on a diaphragm: of the pleural spaces and lungs above, right and left, and of the abdomen below.
 //
-// Volumes are changes from rest [m^3]. A side h of the thorax has v_h = W_h(k) - (S_h - S_h0) +- s: W_h the volume inside
-// the wall (motions/insertion.h), S_h the cones from the wall's apex over the side's triangles, and s the volume that the
-// mediastinum has moved from the left side to the right, a coordinate. Gas and tissue are incompressible, so that v_h' is
-// the flow into the lung. With r_h = r/2 the room of one lung
+// Volumes are changes from rest [m^3]. A side h of the thorax has v_h = W_h(k) - (S_h - S_h0) +- s: W_h the volume
+// inside the wall (motions/insertion.h), S_h the cones from the wall's apex over the side's triangles, and s the volume
+// that the mediastinum has moved from the left side to the right, a coordinate. Gas and tissue are incompressible, so
+// that v_h' is the flow into the lung. With r_h = r/2 the room of one lung
 //   p_pleural,h = o_h [(p_0 - ln(r_h/(r_h - v_h + u_h))/e)/c - 2 R_p,h v_h' - R_c (o_right v_right' + o_left v_left')
 //                      + p_airway - b (o_right v_right + o_left v_left - v_closed)]  [Pa],
 // R_p the peripheral resistance of both lungs side by side, R_c = R - R_p that of the common airway, and by the live
 // parameters c the lung_compliance, u_h the pleural_fluid and o_h = 1 - pneumothorax of the side; airway_resistance
-// multiplies R. With airway_closed the gas that the lungs had when it closed, v_closed, is compressed by Boyle's law: b is
-// the atmospheric pressure over their volume, 0 while it is open, and R_c is 0 then. Below half of trapped_air the airways
-// of a lung close in expiration: R_p,h grows a thousandfold. p_airway is airway_pressure, plus ventilator_pressure times
-// the signal; 0 when closed.
-// Of the abdomen, with v = S_0 - S the volume that the diaphragm displaces,
+// multiplies R. With airway_closed the gas that the lungs had when it closed, v_closed, is compressed by Boyle's law: b
+// is the atmospheric pressure over their volume, 0 while it is open, and R_c is 0 then. Below half of trapped_air the
+// airways of a lung close in expiration: R_p,h grows a thousandfold. p_airway is airway_pressure, plus
+// ventilator_pressure times the signal; 0 when closed. Of the abdomen, with v = S_0 - S the volume that the diaphragm
+// displaces,
 //   p_abdomen = p_0 + p_di + v/(C c_a) (1 + (v/V)^2) + R_a v' + p_load + P_e a_e + w . (x - x_0),
 // c_a the abdominal_compliance, p_load the abdominal_load, a_e the activation of the expiratory muscles and w the
 // gradient by the weight of its contents, whose direction is that of the posture. The forces are those of virtual work:
@@ -27,8 +27,8 @@
 #define PHRENIC_SERVER_MECHANICS_FORCES_THORAX_PRESSURES_H_
 
 #include <array>
-#include <memory>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "server/mechanics/breathing/sheet_kernel.h"
@@ -131,9 +131,9 @@ class ThoraxPressures final : public Force {
   int expiration_ = 0;    // in State::scalars: activation of the expiratory muscles
   int first_scalar_ = 0;  // in State::scalars: 1 if the airway is closed, and the volume change at which it closed
   SheetLayout sheet_;
-  std::vector<std::uint8_t> sides_;       // of each vertex of the sheet; kRight on the midline
+  std::vector<std::uint8_t> sides_;  // of each vertex of the sheet; kRight on the midline
   std::vector<MidlineVertex> midline_;
-  std::array<double, 2> rest_cones_ = {};  // S_h0 [m^3]
+  std::array<double, 2> rest_cones_ = {};             // S_h0 [m^3]
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  // where the weight's pressure is 0 [m]
 };
 

@@ -11,9 +11,9 @@ namespace phrenic {
 namespace {
 
 constexpr std::array<Force::Output, 2> kContactOutputs = {{{"apposed_area", "m^2"}, {"force", "N"}}};
-constexpr double kTouching = 1e-3;        // largest distance of an apposed vertex from the wall [m]
-constexpr double kRestsWithin = 1.5e-3;   // of one that may rest on it [m]
-constexpr double kSteepestRest = 1.2;     // length of grad g: where the wall is steeper no vertex rests on it
+constexpr double kTouching = 1e-3;       // largest distance of an apposed vertex from the wall [m]
+constexpr double kRestsWithin = 1.5e-3;  // of one that may rest on it [m]
+constexpr double kSteepestRest = 1.2;    // length of grad g: where the wall is steeper no vertex rests on it
 
 }  // namespace
 

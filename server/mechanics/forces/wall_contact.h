@@ -34,9 +34,9 @@ class WallContact final : public Force {
  private:
   struct Slider {
     int vertex = 0;
-    double area = 0;                        // at rest [m^2]
-    double rest_gap = 0, touching = 0;      // gaps at rest, and g_0 [m]
-    double rest_gradient = 1;               // length of grad g at rest
+    double area = 0;                    // at rest [m^2]
+    double rest_gap = 0, touching = 0;  // gaps at rest, and g_0 [m]
+    double rest_gradient = 1;           // length of grad g at rest
   };
   WallContact(std::string name, const v1::WallContact& scene, std::shared_ptr<const CageWall> wall)
       : Force(std::move(name)),

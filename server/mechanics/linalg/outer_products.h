@@ -35,8 +35,8 @@ class OuterProducts {
   // Replaces y = B^-1 b by (B + factor S)^-1 b (Sherman and Morrison 1950, term after term). `inverse` sets its second
   // argument to B^-1 times its first.
   void Correct(double factor, absl::FunctionRef<void(const Points&, Points&)> inverse, Points& y);
-  // The same for B diagonal, with 1/B the `weights` of the columns and `factor` > 0, all terms at once (Woodbury 1950): fewer passes over
-  // memory.
+  // The same for B diagonal, with 1/B the `weights` of the columns and `factor` > 0, all terms at once (Woodbury 1950):
+  // fewer passes over memory.
   void CorrectDiagonal(double factor, const Eigen::VectorXd& weights, Points& y);
   // The two halves of Correct, for several right-hand sides: what depends on B alone, and the rest.
   void Prepare(double factor, absl::FunctionRef<void(const Points&, Points&)> inverse);
@@ -53,7 +53,7 @@ class OuterProducts {
 
   std::vector<Term> terms_;
   size_t used_ = 0;
-  Eigen::MatrixXd gram_;   // of CorrectDiagonal
+  Eigen::MatrixXd gram_;  // of CorrectDiagonal
   Eigen::VectorXd along_;
 };
 

@@ -18,9 +18,9 @@ struct CageWall {
   int body = 0;  // of the wall
   Coordinate pump, bucket;
   InnerWall wall;
-  std::vector<int> border = {};                      // simulated vertices, in the order of their triangles' edges
-  Eigen::Vector3d apex = Eigen::Vector3d::Zero();    // of the cones by which volumes are measured [m]
-  InnerWall::Volumes volumes = {};                   // inside the wall, above the border
+  std::vector<int> border = {};                    // simulated vertices, in the order of their triangles' edges
+  Eigen::Vector3d apex = Eigen::Vector3d::Zero();  // of the cones by which volumes are measured [m]
+  InnerWall::Volumes volumes = {};                 // inside the wall, above the border
 
   CagePosition Position(const EvalContext& at) const { return {pump.Value(at.x), bucket.Value(at.x)}; }
   CagePosition Rate(const EvalContext& at) const { return {pump.Rate(at.v), bucket.Rate(at.v)}; }
@@ -28,9 +28,9 @@ struct CageWall {
 
 class Insertion final : public Motion {
  public:
-  // Fixes the vertices to the wall. Requires: the motions of the wall's bones, and its skin, come before. INVALID_ARGUMENT
-  // if the ribs are not free, the wall is no polar grid (breathing/wall_grid.h) or is not skinned, or the body is not
-  // deformable.
+  // Fixes the vertices to the wall. Requires: the motions of the wall's bones, and its skin, come before.
+  // INVALID_ARGUMENT if the ribs are not free, the wall is no polar grid (breathing/wall_grid.h) or is not skinned, or
+  // the body is not deformable.
   static absl::StatusOr<std::unique_ptr<Motion>> Make(const v1::Insertion& scene, const std::string& name,
                                                       std::string_view path, ModelBuilder& builder);
 

@@ -86,8 +86,9 @@ absl::StatusOr<std::unique_ptr<Motion>> Ribs::Make(const v1::Ribs& scene, const 
   }
   if (scene.has_free()) motion->AddCoordinates(scene.free(), builder);
   builder.ReportElement("motion", name, static_cast<std::int64_t>(motion->ribs_.size()), "bodies",
-                        scene.has_free() ? "moved by forces"
-                                         : absl::StrFormat("k = %g at the peak of a quiet breath", scene.quiet_state()));
+                        scene.has_free()
+                            ? "moved by forces"
+                            : absl::StrFormat("k = %g at the peak of a quiet breath", scene.quiet_state()));
   return motion;
 }
 
