@@ -14,17 +14,17 @@ constexpr double kLeastRadius = 1e-6;      // below it a point has no turn [m]
 constexpr int kLevels = 60;                // of the wall between a loop and its top
 
 // A measure of the azimuth, in [0, 4), and its derivatives by x and y.
-struct Turn {
+struct WallTurn {
   double value, by_x, by_y;
 };
 
-Turn TurnOf(double x, double front) {
+WallTurn WallTurnOf(double x, double front) {
   const double size = std::max(std::abs(x) + std::abs(front), kLeastRadius), ratio = x / size;
   const double value = front < 0 ? 2 - ratio : (x < 0 ? 4 + ratio : ratio);
   return {value < 4 ? value : 0, front / (size * size), x / (size * size)};
 }
 
-double AzimuthOf(double turn) {
+double AzimuthOfTurn(double turn) {
   const double ratio = turn < 1 ? turn : (turn < 3 ? 2 - turn : turn - 4);
   const double front = (turn < 1 || turn > 3 ? 1 : -1) * (1 - std::abs(ratio));
   const double azimuth = std::atan2(ratio, front);
@@ -32,13 +32,13 @@ double AzimuthOf(double turn) {
 }
 
 // The four entries around a point of the table, and where it lies between them.
-struct Cell {
+struct WallCell {
   int low_left, low_right, high_left, high_right;
   double u, v;  // fractions to the right and upwards
   bool inside;  // not beyond the table's lower or upper border
 };
 
-Cell CellAt(double turn, double height) {
+WallCell WallCellAt(double turn, double height) {
   const double column = turn * (kTurns / 4), row = std::clamp(height * (kHeights - 1), 0.0, kHeights - 1.0);
   const int left = std::min(static_cast<int>(column), kTurns - 1),
             below = std::min(static_cast<int>(row), kHeights - 2);
@@ -69,7 +69,7 @@ void InnerWall::Tabulate() {
   radius_.resize(kTurns * kHeights);
   for (auto& coefficient : change_) coefficient.resize(radius_.size());
   for (int entry = 0; entry < kTurns * kHeights; ++entry) {
-    const double azimuth = AzimuthOf(4.0 * (entry % kTurns) / kTurns);
+    const double azimuth = AzimuthOfTurn(4.0 * (entry % kTurns) / kTurns);
     const double z = bottom_ + height_ * (entry / kTurns) / (kHeights - 1);
     const GridCoordinates there = grid_.Locate(rest_, azimuth, z, grid_.Guess(rest_, azimuth, z));
     radius_[entry] = grid_.Polar(grid_.At(rest_, there)).radius;
@@ -108,8 +108,8 @@ bool InnerWall::IsFarInside(const WallTable& table, const Eigen::Vector3d& point
 
 WallGap InnerWall::Gap(const WallTable& table, const Eigen::Vector3d& point) const {
   const double x = point.x(), front = grid_.axis_y() - point.y();
-  const Turn turn = TurnOf(x, front);
-  const Cell cell = CellAt(turn.value, (point.z() - bottom_) / height_);
+  const WallTurn turn = WallTurnOf(x, front);
+  const WallCell cell = WallCellAt(turn.value, (point.z() - bottom_) / height_);
   const WallTable::Entry &a = table.entries[cell.low_left], &b = table.entries[cell.low_right],
                          &c = table.entries[cell.high_left], &d = table.entries[cell.high_right];
   const double u = cell.u, v = cell.v;
