@@ -89,7 +89,8 @@ grpc::Status WaitForStudy(const Context& context, v1::StudyService::Stub& stub, 
 
 void PrintReference(const v1::Reference& reference) {
   std::cout << absl::StrFormat(
-      "reference: %s, tolerance %g m; its own error is %.2g mm (maximum), %.2g mm (RMS); %d evaluations, %.3g s CPU\n"
+      "reference: %s, tolerance %g m; its own error is %.2g mm (maximum), %.2g mm (RMS over the vertices that move "
+      "freely); %d evaluations, %.3g s CPU\n"
       "largest displacement: %.4g mm\n",
       reference.method(), reference.tolerance_m(), reference.error_max_mm(), reference.error_rms_mm(),
       reference.evaluations(), reference.cpu_s(), reference.largest_displacement_mm());

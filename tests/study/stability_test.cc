@@ -48,7 +48,7 @@ const char kHungSheet[] = R"(
 v1::LimitRow Limit(const std::string& text, v1::Integrator integrator, double factor = 1) {
   v1::LimitRow row;
   const Subject subject = With(Stiffened(SubjectOf(text), factor), integrator);
-  EXPECT_TRUE(MeasureLimit(subject, 60, kNeverCancel, row).ok());
+  EXPECT_TRUE(MeasureLimit(subject, 1, 60, kNeverCancel, row).ok());
   return row;
 }
 
