@@ -107,6 +107,7 @@ void PrintStudy(const v1::StudyResult& result) {
   PrintTables(ResultTables(result), std::cout);
   if (result.has_error()) std::cout << "\n" << result.error().advice() << "\n";
   if (result.has_streaming()) PrintStreaming(result.streaming());
+  for (const std::string& note : result.cost().notes()) std::cout << "\nnote: " << note << "\n";
   if (result.cost().has_growth_exponent()) {
     std::cout << absl::StrFormat("\ncost grows with vertices^%.3f\n", result.cost().growth_exponent());
   }

@@ -191,9 +191,7 @@ absl::StatusOr<std::string> WriteStl(const Mesh& mesh) {
     const Eigen::Vector3d a = mesh.vertices.col(triangle[0]), b = mesh.vertices.col(triangle[1]);
     const Eigen::Vector3d c = mesh.vertices.col(triangle[2]), normal = (b - a).cross(c - a).stableNormalized();
     for (const Eigen::Vector3d& row : {normal, a, b, c}) {
-      const Eigen::Vector3f small = row.cast<float>();
-      if (!small.allFinite()) return absl::InvalidArgumentError("a coordinate is too large for STL's float32");
-      for (const float number : small) AppendBytes(bytes, number);
+      for (const double number : row) AppendBytes(bytes, static_cast<float>(number));
     }
     AppendBytes(bytes, std::uint16_t{0});
   }

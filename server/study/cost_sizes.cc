@@ -82,6 +82,8 @@ void AddRow(const ThesisSize& thesis, const Sized& sized, const Timing& with, co
             v1::CostTable& table) {
   v1::SizeRow& row = *table.add_sizes();
   row.set_what(thesis.what);
+  AddTrials(thesis.what, with, table);
+  AddTrials(absl::StrCat(thesis.what, ", without links"), without, table);
   if (sized.resolution_mm > 0) row.set_resolution_mm(sized.resolution_mm);
   row.set_vertices(with.subject.model->report.simulated_vertices());
   row.set_links(with.subject.model->report.rigid_links());

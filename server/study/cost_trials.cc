@@ -163,6 +163,16 @@ absl::Status TimeInterleaved(std::vector<Timing>& timings, int trials, double mo
   return absl::OkStatus();
 }
 
+void AddTrials(const std::string& variant, const Timing& timing, v1::CostTable& table) {
+  for (size_t trial = 0; trial < timing.step_s.size(); ++trial) {
+    v1::TrialRow& row = *table.add_trials();
+    row.set_variant(variant);
+    row.set_vertices(timing.subject.model->report.simulated_vertices());
+    row.set_trial(static_cast<int64_t>(trial) + 1);
+    row.set_cpu_us_per_step(1e6 * timing.step_s[trial]);
+  }
+}
+
 double Median(std::vector<double> values) { return values.empty() ? 0 : boost::math::statistics::median(values); }
 
 double MiddleMean(std::vector<double> values) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "phrenic/v1/study_results.pb.h"
 #include "server/study/cost_budget.h"
 #include "server/study/trajectory.h"
 
@@ -25,6 +26,9 @@ struct Timing {
 // false. Uses one thread.
 absl::Status TimeInterleaved(std::vector<Timing>& timings, int trials, double most_seconds, const std::string& what,
                              CostBudget& budget, const Progress& progress);
+
+// Appends the timing's trials.
+void AddTrials(const std::string& variant, const Timing& timing, v1::CostTable& table);
 
 // Returns the median; 0 if there are no values.
 double Median(std::vector<double> values);

@@ -145,6 +145,7 @@ void AddRow(const Variants& all, size_t index, v1::CostTable& table) {
   row.set_note(timing.problem.empty() || variant.note.empty() ? variant.note + timing.problem
                                                               : absl::StrCat(variant.note, "; ", timing.problem));
   SetTimes(timing, row);
+  AddTrials(variant.name, timing, table);
   row.set_share(MedianRatio(timing, all.timings.front()));
   if (variant.never_had != index) row.set_over_never_had(MedianRatio(timing, all.timings[variant.never_had]));
   SetThesis(variant, *all.timings.front().subject.model, row);

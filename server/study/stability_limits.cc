@@ -18,10 +18,10 @@ constexpr long kShortestTrial = 30;       // the same if the CPU budget cuts it
 constexpr long kMaxSteps = 20000;         // largest number: limits that need more are not measured
 constexpr double kDampings = 60;          // damping times of a trial of explicit Euler with friction
 constexpr double kGrowth = 1e6;           // of the perturbation's energy: resonance below the limit stays far below it
-constexpr double kSlowGrowth = 10;        // the same for explicit Euler, which has no resonance
+constexpr double kSlowGrowth = 10;        // the same for explicit Euler, and where no step is stable
 constexpr double kLimitTolerance = 0.01;  // relative, of the measured limit
 constexpr double kFirstFactor = 1.03;     // first ratio to the prediction in the search
-constexpr double kTriedStep = 0.2;     // of a trial where no step is stable, over 1/omega
+constexpr double kTriedStep = 0.2;        // of a trial where no step is stable, over 1/omega
 constexpr double kMaxFactor = 4;          // largest ratio to the prediction in the search
 
 bool GrowsSlowly(const Subject& subject) { return subject.parameters.integrator() == v1::INTEGRATOR_EXPLICIT_EULER; }
@@ -42,8 +42,14 @@ double SimulatedTime(const Subject& subject, const FastestMode& fastest, double 
 // Finds the step above which the run leaves the run at a tenth of the predicted step.
 class Bisection {
  public:
-  Bisection(const Subject& subject, const FastestMode& fastest, double most_cpu_s, const Progress& progress)
-      : subject_(subject), most_cpu_s_(most_cpu_s), progress_(progress), start_(Perturbed(subject, fastest)) {
+  // A trial leaves if it gains `growth` times the perturbation's energy.
+  Bisection(const Subject& subject, const FastestMode& fastest, double growth, double most_cpu_s,
+            const Progress& progress)
+      : subject_(subject),
+        growth_(growth),
+        most_cpu_s_(most_cpu_s),
+        progress_(progress),
+        start_(Perturbed(subject, fastest)) {
     subject_.parameters.set_step_tolerance(0);
   }
 
@@ -60,9 +66,7 @@ class Bisection {
   bool out_of_time() const { return out_of_time_; }
 
   // Runs a trial with the step dt.
-  absl::StatusOr<Trial> Try(double dt) {
-    return TryStep(subject_, tenth_, dt, GrowsSlowly(subject_) ? kSlowGrowth : kGrowth, most_cpu_s_, Labelled(dt));
-  }
+  absl::StatusOr<Trial> Try(double dt) { return TryStep(subject_, tenth_, dt, growth_, most_cpu_s_, Labelled(dt)); }
 
   // Bisects between a stable step and an unstable one.
   absl::Status Narrow(double low, double high, v1::LimitRow& row) {
@@ -109,7 +113,7 @@ class Bisection {
   }
 
   Subject subject_;
-  double most_cpu_s_;
+  const double growth_, most_cpu_s_;
   const Progress& progress_;
   const State start_;
   ShortStepRun tenth_;
@@ -181,7 +185,8 @@ absl::Status MeasureLimit(const Subject& subject, double seconds, double most_cp
         absl::StrFormat("not measured: with friction this weak, growth needs more than %d steps to show", kMaxSteps));
     return absl::OkStatus();
   }
-  Bisection bisection(subject, fastest, most_cpu_s, progress);
+  const double growth = predicted == 0 || GrowsSlowly(subject) ? kSlowGrowth : kGrowth;
+  Bisection bisection(subject, fastest, growth, most_cpu_s, progress);
   absl::Status status = bisection.Begin(SimulatedTime(subject, fastest, seconds, dt), dt);
   if (!status.ok()) return status;
   row.set_seconds(bisection.tenth().seconds);
