@@ -11,13 +11,13 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-std::string Square(const std::string& name, const std::string& side) {
+std::string SquareOfSide(const std::string& name, const std::string& side) {
   return WriteScratch(name + ".obj",
                       "v 0 0 0\nv " + side + " 0 0\nv " + side + " " + side + " 0\nv 0 " + side + " 0\nf 1 2 3 4\n");
 }
 
 TEST(Traps, AComparisonOfMetresWithMillimetresWarnsInEveryOutput) {
-  const std::string a = Square("millimetres", "200"), b = Square("metres", "0.2");
+  const std::string a = SquareOfSide("millimetres", "200"), b = SquareOfSide("metres", "0.2");
   for (const char* output : {"table", "json", "csv"}) {
     const Outcome compared = Phrenic({"compare", a, b, "-o", output});
     EXPECT_EQ(compared.code, 0) << compared.err;
@@ -28,7 +28,7 @@ TEST(Traps, AComparisonOfMetresWithMillimetresWarnsInEveryOutput) {
 }
 
 TEST(Traps, ArgumentsThatCannotBeRightAreErrorsOfUsage) {
-  const std::string a = Square("a", "200");
+  const std::string a = SquareOfSide("a", "200");
   const std::vector<std::vector<std::string>> lines = {
       {"run", "cube-springs", "--seconds", "-3"},
       {"run", "cube-springs", "--set", "x=99"},
