@@ -1,10 +1,12 @@
 #include "client/cli/argument_kinds.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "client/cli/scene_argument.h"
 #include "server/schema/fields.h"
 #include "server/schema/names.h"
 
@@ -81,6 +83,9 @@ bool Fits(const KindRow& row, const std::string& path, const std::string& name) 
 void ApplyTo(const CLI::App& command, CLI::Option& option) {
   const ArgumentKind kind = KindOf(command, option);
   if (!kind.placeholder.empty()) option.type_name(kind.placeholder);
+  if (kind.kind == Kind::kSetting) {
+    option.check(ParsedBy([](const std::string& text) { return ReadSettings({text}).status(); }), "");
+  }
   if (kind.kind != Kind::kChoice) return;
   const auto check = [choices = kind.choices](const std::string& value) {
     if (std::ranges::find(choices, value) != choices.end()) return std::string();
@@ -103,6 +108,11 @@ CLI::Validator NumberIn(double low, double high) {
     return schema::NumberProblem(value, &quantity).value_or("");
   };
   return CLI::Validator(check, absl::StrCat(" in [", range, "]"));
+}
+
+CLI::Validator ParsedBy(std::function<absl::Status(const std::string&)> parse) {
+  const auto check = [parse = std::move(parse)](std::string& text) { return std::string(parse(text).message()); };
+  return {check, ""};
 }
 
 std::string NameOf(const CLI::Option& option) {

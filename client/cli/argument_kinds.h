@@ -3,8 +3,11 @@
 #define PHRENIC_CLIENT_CLI_ARGUMENT_KINDS_H_
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include "absl/status/status.h"
 
 namespace phrenic::client {
 
@@ -19,12 +22,14 @@ struct ArgumentKind {
 // Returns the kind of an option or positional argument of a command.
 ArgumentKind KindOf(const CLI::App& command, const CLI::Option& option);
 
-// Sets the placeholder of every argument of the tree, and a check for every choice: an unknown choice is an error that
-// names the nearest one.
+// Sets the placeholder of every argument of the tree, and a check for every choice and every setting: an unknown choice
+// is an error that names the nearest one.
 void ApplyKinds(CLI::App& command);
 
 // Returns a check for numbers in [low, high].
 CLI::Validator NumberIn(double low, double high);
+// Returns a check for texts that `parse` accepts; its message becomes an error of usage.
+CLI::Validator ParsedBy(std::function<absl::Status(const std::string&)> parse);
 
 // Returns the option's long name, such as "--seconds", or the positional argument's name.
 std::string NameOf(const CLI::Option& option);

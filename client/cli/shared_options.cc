@@ -2,6 +2,7 @@
 
 #include "client/cli/argument_kinds.h"
 #include "client/cli/schema_options.h"
+#include "client/files/motion_file.h"
 #include "phrenic/v1/export.pb.h"
 #include "server/session/export/export_catalogue.h"
 
@@ -25,7 +26,9 @@ void AddPreset(CLI::App& command, std::string& preset) {
 }
 
 void AddPulls(CLI::App& command, std::vector<std::string>& pulls) {
-  command.add_option("--pull", pulls, "force [N] on a vertex; may be repeated")->allow_extra_args(false);
+  command.add_option("--pull", pulls, "force [N] on a vertex; may be repeated")
+      ->check(ParsedBy([](const std::string& text) { return ReadPulls({text}).status(); }))
+      ->allow_extra_args(false);
 }
 
 void AddDataFolder(CLI::App& command, std::string& folder) {
@@ -56,7 +59,9 @@ void AddUnit(CLI::App& command, const char* flag, double& unit_mm, const std::st
 
 void AddMotion(CLI::App& command, MotionOptions& motion) {
   const google::protobuf::Descriptor& request = *v1::CreateExportRequest::descriptor();
-  command.add_option("--at,--from", motion.start, FieldHelp(request, "start"));
+  const v1::Quantity& start = *schema::QuantityOf(*request.FindFieldByName("start"));
+  command.add_option("--at,--from", motion.start, FieldHelp(request, "start"))
+      ->check(NumberIn(start.minimum(), start.maximum()));
   CLI::Option* rate =
       command.add_option("--fps", motion.frames_per_second, "frames per simulated second (10; .glb: 24 per breath)");
   command.add_option("--every", motion.steps_per_frame, FieldHelp(request, "steps_per_frame"))
@@ -77,6 +82,11 @@ std::string ExportEndings() {
     names += (names.empty() ? " (." : ", .") + format.name + (format.instant ? "*" : "");
   }
   return names + "; * for one instant)";
+}
+
+CLI::Validator ExportFile() {
+  return ParsedBy(
+      [](const std::string& file) { return record::FindFormat(session::ExportFormats(), FormatOf(file)).status(); });
 }
 
 CommandFunction SetUpWithSession(CLI::App& command, int (*run)(const Context&, const std::string&)) {

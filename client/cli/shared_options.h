@@ -34,6 +34,8 @@ void AddMotion(CLI::App& command, MotionOptions& motion);
 
 // Returns the endings of the export formats: " (.msh, .obj*; * for one instant)".
 std::string ExportEndings();
+// Returns a check that the file name's extension is one of them.
+CLI::Validator ExportFile();
 
 // Returns a function that calls `run` with the options. The options live as long as the function.
 template <typename Options>

@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "client/cli/argument_kinds.h"
 #include "client/cli/schema_options.h"
 #include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
@@ -23,6 +24,7 @@
 #include "client/terminal/progress.h"
 #include "phrenic/v1/compare.grpc.pb.h"
 #include "server/meshio/meshio.h"
+#include "server/record/distance_map.h"
 #include "server/service/server.h"
 
 namespace phrenic::client {
@@ -146,6 +148,7 @@ int CompareOn(const Context& context, const CompareOptions& options, const v1::C
     if (const absl::Status status = WriteWhole(options.map_file, map); !status.ok()) return Fail(status);
   }
   PrintTable(context, response.table());
+  for (const std::string& warning : response.table().warnings()) std::cerr << "phrenic: warning: " << warning << "\n";
   return CheckComparison(options, response.table(), limits);
 }
 
@@ -189,7 +192,8 @@ CommandFunction SetUpCompare(CLI::App& command) {
   command.add_flag("--regions", options->by_region, "also compare each region (body) with that of the same name");
   command.add_flag("--phases", options->match_phases,
                    "scale the times of B so that they start and end with those of A");
-  command.add_option("--map", options->map_file, "write A coloured by its distance to B (.msh: Gmsh; .vtp: ParaView)");
+  command.add_option("--map", options->map_file, "write A coloured by its distance to B (.msh: Gmsh; .vtp: ParaView)")
+      ->check(ParsedBy([](const std::string& file) { return record::FindMapFormat(FormatOf(file)).status(); }));
   command.add_option("--check", options->checks, "limits of measures, comma-separated; exit code 4 if one is exceeded")
       ->delimiter(',')
       ->allow_extra_args(false);

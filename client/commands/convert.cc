@@ -22,6 +22,7 @@ struct ConvertOptions {
   std::string in, out;
   std::vector<std::string> repairs;     // of "weld", "slivers", "fins", "orient" and "all"
   double within_mm = 1e-3;              // points closer than this coincide
+  std::vector<double> offset_mm;        // shift of the surface, x y z [mm]; empty: none
   double unit_mm = 1, out_unit_mm = 1;  // length of the units of IN and OUT [mm]
 };
 
@@ -52,10 +53,16 @@ void Repair(const ConvertOptions& options, Mesh& mesh) {
   if (wanted("orient")) report(Orient(mesh), " triangles reoriented\n");
 }
 
+void Shift(const ConvertOptions& options, Mesh& mesh) {
+  if (options.offset_mm.empty()) return;
+  mesh.vertices.colwise() += Eigen::Map<const Eigen::Vector3d>(options.offset_mm.data()) / options.out_unit_mm;
+}
+
 int Convert(const Context& context, const ConvertOptions& options) {
   // Reads in units of OUT, not metres, so that equal units keep all digits.
   auto surface = meshio::ReadSurface(options.in, options.unit_mm / options.out_unit_mm);
   if (!surface.ok()) return Fail(surface.status());
+  Shift(options, surface->mesh);
   Repair(options, surface->mesh);
   const auto bytes = meshio::Write(options.out, surface->mesh, 1);
   if (!bytes.ok()) return Fail(bytes.status());
@@ -83,6 +90,13 @@ CommandFunction SetUpConvert(CLI::App& command) {
       ->required();
   AddUnit(command, "--unit-mm", options->unit_mm, "IN's");
   AddUnit(command, "--out-unit-mm", options->out_unit_mm, "OUT's");
+  command
+      .add_option("--offset-mm", options->offset_mm,
+                  "shifts the surface by x,y,z in the frame LPS [mm], such as 0,-135,0 (none)")
+      ->check(NumberIn(-1e9, 1e9))
+      ->delimiter(',')
+      ->expected(3)
+      ->allow_extra_args(false);
   command
       .add_option("--repair", options->repairs,
                   "weld (merge coincident vertices), slivers (remove thin and doubled triangles), fins (remove pieces "

@@ -57,6 +57,7 @@ CommandFunction SetUpExport(CLI::App& command) {
   const auto options = std::make_shared<ExportOptions>();
   AddSession(command, options->id);
   command.add_option("FILE", options->motion.file, "file to write; its ending sets the format" + ExportEndings())
+      ->check(ExportFile())
       ->required();
   command.add_option("--seconds", options->motion.seconds, "simulated time to record [s] (8; 0 for one instant)");
   AddMotion(command, options->motion);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
@@ -120,7 +121,7 @@ int ExportRun(const Context& context, const RunOptions& options, service::Server
 }
 
 void PrintCost(const RunOptions& options, const v1::CompileReport& report, const RunCost& cost,
-               const study::ThesisFigure& thesis) {
+               const std::optional<study::ThesisFigure>& thesis) {
   const double rate = static_cast<double>(cost.steps) / cost.wall;
   std::cout << absl::StrFormat("%s: %d vertices, %d springs, %d rigid links, %d attachments\n", report.scene(),
                                report.simulated_vertices(), report.springs(), report.rigid_links(),
@@ -133,16 +134,21 @@ void PrintCost(const RunOptions& options, const v1::CompileReport& report, const
       {"Phrenic", absl::StrFormat("%.0f", rate), absl::StrFormat("%.2f", cost.simulated / cost.wall),
        absl::StrFormat("%.1f", 1e6 * step_cpu),
        report.springs() > 0 ? absl::StrFormat("%.2f", 1e9 * step_cpu / static_cast<double>(report.springs())) : "-"});
-  table.Add({"thesis (" + thesis.what + ")", absl::StrFormat("%.2f", thesis.steps_per_second), "-", "-", "-"});
+  if (thesis) {
+    table.Add({"thesis (" + thesis->what + ")", absl::StrFormat("%.2f", thesis->steps_per_second), "-", "-", "-"});
+  }
   table.Print(std::cout);
-  std::cout << absl::StrFormat("%.0f times the steps per second of the thesis (another machine, 2008)\nstate hash %s\n",
-                               rate / thesis.steps_per_second, cost.state_hash);
+  if (thesis) {
+    std::cout << absl::StrFormat("%.0f times the steps per second of the thesis (another machine, 2008)\n",
+                                 rate / thesis->steps_per_second);
+  }
+  std::cout << "state hash " << cost.state_hash << "\n";
   PrintMeasureRanges(cost.measures, std::cout);
   if (!options.motion.file.empty()) std::cout << "wrote " << options.motion.file << "\n";
 }
 
 void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& session, const RunCost& cost,
-                   const study::ThesisFigure& thesis) {
+                   const std::optional<study::ThesisFigure>& thesis) {
   nlohmann::json json = {
       {"simulated_seconds", cost.simulated},
       {"steps", cost.steps},
@@ -150,7 +156,6 @@ void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& sess
       {"cpu_seconds", cost.cpu},
       {"steps_per_second", static_cast<double>(cost.steps) / cost.wall},
       {"times_real_time", cost.simulated / cost.wall},
-      {"thesis", {{"figure", thesis.what}, {"steps_per_second", thesis.steps_per_second}}},
       {"state_hash", cost.state_hash},
       {"measures", MeasureRangesJson(cost.measures)},
       {"constraint_residual_mm", 1e3 * cost.residual},
@@ -159,7 +164,14 @@ void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& sess
       {"report", nlohmann::json::parse(Json(session.report()))},
       {"session", nlohmann::json::parse(Json(session.session()))},
   };
+  if (thesis) json["thesis"] = {{"figure", thesis->what}, {"steps_per_second", thesis->steps_per_second}};
   std::cout << json.dump(1) << "\n";
+}
+
+// Returns the thesis' figure of a model like the scene's; nullopt if the thesis has none.
+std::optional<study::ThesisFigure> ThesisFigureOf(const v1::Scene& scene, const v1::CompileReport& report) {
+  const auto trial = report.rigid_links() > 0 ? study::ThesisTrial::kFull : study::ThesisTrial::kNoLinks;
+  return study::LikeThesisFigure(scene, report.simulated_vertices(), trial);
 }
 
 // Prints what the run would do, after its scene was compiled.
@@ -208,7 +220,7 @@ int RunOn(const Context& context, const RunOptions& options, const RunInput& inp
     }
     if (!status.ok()) return Fail(context, status);
   }
-  const study::ThesisFigure thesis = study::NearestThesisFigure(described.scene(), session.report());
+  const std::optional<study::ThesisFigure> thesis = ThesisFigureOf(described.scene(), session.report());
   if (context.json()) {
     PrintCostJson(options, session, cost, thesis);
   } else {
@@ -250,7 +262,8 @@ CommandFunction SetUpRun(CLI::App& command) {
   command.add_option("--seconds", options->seconds, "simulated time [s]")
       ->check(NumberIn(1e-6, 3600.0))
       ->capture_default_str();
-  command.add_option("--export", options->motion.file, "write the motion to this file" + ExportEndings());
+  command.add_option("--export", options->motion.file, "write the motion to this file" + ExportEndings())
+      ->check(ExportFile());
   AddMotion(command, options->motion);
   command.add_option("--threads", options->threads, "threads for a step of a large scene; does not change the result")
       ->check(NumberIn(1, 256))

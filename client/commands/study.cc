@@ -89,7 +89,8 @@ grpc::Status WaitForStudy(const Context& context, v1::StudyService::Stub& stub, 
 
 void PrintReference(const v1::Reference& reference) {
   std::cout << absl::StrFormat(
-      "reference: %s, tolerance %g m; its own error is %.2g mm (maximum), %.2g mm (RMS); %d evaluations, %.3g s CPU\n"
+      "reference: %s, tolerance %g m; its own error is %.2g mm (maximum), %.2g mm (RMS over the vertices that move "
+      "freely); %d evaluations, %.3g s CPU\n"
       "largest displacement: %.4g mm\n",
       reference.method(), reference.tolerance_m(), reference.error_max_mm(), reference.error_rms_mm(),
       reference.evaluations(), reference.cpu_s(), reference.largest_displacement_mm());
@@ -106,6 +107,7 @@ void PrintStudy(const v1::StudyResult& result) {
   PrintTables(ResultTables(result), std::cout);
   if (result.has_error()) std::cout << "\n" << result.error().advice() << "\n";
   if (result.has_streaming()) PrintStreaming(result.streaming());
+  for (const std::string& note : result.cost().notes()) std::cout << "\nnote: " << note << "\n";
   if (result.cost().has_growth_exponent()) {
     std::cout << absl::StrFormat("\ncost grows with vertices^%.3f\n", result.cost().growth_exponent());
   }

@@ -13,11 +13,11 @@ namespace {
 
 // Prints the command that lists what was not found.
 void PrintListCommand(const std::string& error) {
-  constexpr std::pair<const char*, const char*> kCommands[] = {
+  constexpr std::pair<const char*, const char*> kListCommands[] = {
       {"session_id:", "phrenic sessions; or create one: phrenic create thorax --play"},
       {"export_id:", "phrenic exports list"},
       {"study_id:", "phrenic study list"}};
-  for (const auto& [field, command] : kCommands) {
+  for (const auto& [field, command] : kListCommands) {
     if (error.starts_with(field)) std::cerr << "  list them: " << command << "\n";
   }
 }

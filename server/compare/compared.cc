@@ -10,8 +10,6 @@
 namespace phrenic::compare {
 namespace {
 
-constexpr double kMaxCoordinate = 1e6;  // [m]; squares and sums of smaller coordinates stay accurate
-
 absl::StatusOr<Compared> ReadFile(const v1::ComparedSurface& file, const char* field) {
   if (file.name().empty()) return absl::InvalidArgumentError(absl::StrCat(field, ".name: must be set for a file"));
   const double unit = kMillimetre * (file.has_unit_mm() ? file.unit_mm() : 1);

@@ -9,6 +9,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "server/compare/domes.h"
+#include "server/compare/doubts.h"
 #include "server/compare/moments.h"
 #include "server/compare/surface_distance.h"
 #include "server/mesh/units.h"
@@ -69,6 +70,8 @@ class Comparer {
         part.b.MoveTo(b);
         if (absl::Status status = MeasurePart(part, moment); !status.ok()) return status;
       }
+      const ComparedPart& whole = parts_.front();
+      if (doubts_.empty()) doubts_ = Doubts(whole.a, whole.b, kMillimetre * whole.distances.back().assd());
     }
     return absl::OkStatus();
   }
@@ -82,6 +85,7 @@ class Comparer {
     if (compared_.b.state) *table.mutable_state_b() = *compared_.b.state;
     table.set_tolerance_mm(options_.tolerance / kMillimetre);
     table.set_times_left_out(moments_.left_out);
+    table.mutable_warnings()->Assign(doubts_.begin(), doubts_.end());
     for (const ComparedPart& part : parts_) AddRow(part.region, OverTimes(part.distances), part.baselines, table);
     for (std::size_t m = 0; m < moments_.pairs.size(); ++m) {
       if (!moments_.pairs[m].time) break;
@@ -161,6 +165,7 @@ class Comparer {
   const ComparisonSink& sink_;
   DistanceOptions options_;
   std::vector<ComparedPart> parts_;           // the whole surface first
+  std::vector<std::string> doubts_;           // of the first moment that has any
   std::vector<Eigen::VectorXd> at_vertices_;  // of the whole surface, one per moment, if a map is requested
 };
 

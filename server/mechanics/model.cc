@@ -11,7 +11,7 @@ namespace phrenic {
 State Model::InitialState() const {
   State state;
   state.x = rest;
-  state.v = Points::Zero(3, rest.cols());
+  state.v = initial_velocity.cols() > 0 ? initial_velocity : Points::Zero(3, rest.cols());
   int poses = 0;
   for (const BodyModel& body : bodies) poses += body.pose >= 0 ? 1 : 0;
   state.poses.resize(poses);

@@ -81,6 +81,7 @@ struct Model {
   v1::Parameters parameters;  // of a new session; every field set
   std::vector<BodyModel> bodies;
   Points rest;                   // positions of the simulated vertices at rest, 3 x n [m]
+  Points initial_velocity;       // 3 x n [m/s]; empty if the scene starts at rest
   Eigen::VectorXd mass;          // [kg]
   Eigen::VectorXd inverse_mass;  // [1/kg]; 0 for fixed and driven vertices
   std::vector<std::unique_ptr<Force>> forces;
@@ -103,7 +104,7 @@ struct Model {
   std::vector<int> driven_vertices;  // moved by motions
   std::vector<ActionLineView> action_lines;
 
-  // Returns the state at t = 0: at rest, driven bodies where the motions have them.
+  // Returns the state at t = 0: undeformed, with the initial velocities, driven bodies where the motions have them.
   State InitialState() const;
   // Returns memory for steps of this model.
   Workspace MakeWorkspace() const;

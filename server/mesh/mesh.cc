@@ -31,10 +31,19 @@ absl::Status Validate(const Mesh& mesh) {
     if (!mesh.vertices.col(i).allFinite()) {
       return absl::InvalidArgumentError(absl::StrCat("vertex ", i, " has a coordinate that is not a finite number"));
     }
+    if (const double largest = mesh.vertices.col(i).cwiseAbs().maxCoeff(); largest > kMaxNumber) {
+      return absl::InvalidArgumentError(absl::StrCat("vertex ", i, " has a coordinate of ", largest, "; at most ",
+                                                     kMaxNumber, " is accepted: is the file or its unit damaged?"));
+    }
   }
   if (absl::Status status = CheckIndices(mesh.triangles, vertices, "triangle"); !status.ok()) return status;
   if (absl::Status status = CheckIndices(mesh.tetrahedra, vertices, "tetrahedron"); !status.ok()) return status;
   if (absl::Status status = CheckIndices(mesh.edges, vertices, "edge"); !status.ok()) return status;
+  for (Eigen::Index e = 0; e < mesh.edges.cols(); ++e) {
+    if (mesh.edges(0, e) != mesh.edges(1, e)) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat("edge ", e, " joins vertex ", mesh.edges(0, e), " with itself; remove it"));
+  }
   for (const auto& [name, region] : mesh.regions) {
     for (const int index : region) {
       if (index >= 0 && index < vertices) continue;

@@ -19,6 +19,9 @@ using Edges = Eigen::Matrix2Xi;       // 2 x n, vertex indices
 using ConstPoints = Eigen::Ref<const Points>;
 using MutablePoints = Eigen::Ref<Points>;
 
+inline constexpr double kMaxNumber = 1e9;      // of a coordinate in any unit; squares and products stay accurate
+inline constexpr double kMaxCoordinate = 1e6;  // [m]; of what is simulated or measured
+
 struct Mesh {
   Points vertices;                                  // [m]
   Triangles triangles;                              // the surface; for a solid, its boundary faces
@@ -27,8 +30,8 @@ struct Mesh {
   std::map<std::string, std::vector<int>> regions;  // named vertex sets: "tendon", "muscle", "rim", "crus-right"
 };
 
-// Checks that the mesh has a vertex, that every coordinate is finite and every index is in range. INVALID_ARGUMENT
-// names the first vertex, triangle, tetrahedron, edge or region that fails.
+// Checks that the mesh has a vertex, that every coordinate is a number up to kMaxNumber, every index is in range, and
+// every edge has two ends. INVALID_ARGUMENT names the first vertex, triangle, tetrahedron, edge or region that fails.
 absl::Status Validate(const Mesh& mesh);
 
 }  // namespace phrenic

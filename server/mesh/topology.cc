@@ -65,7 +65,7 @@ class EdgeTable {
     for (Eigen::Index t = 0; t < triangles.cols(); ++t, corner += 3) {
       for (int k = 0; k < 3; ++k) {
         const int a = corner[k], b = corner[(k + 1) % 3];
-        use(std::min(a, b), std::max(a, b));
+        if (a != b) use(std::min(a, b), std::max(a, b));
       }
     }
   }

@@ -40,9 +40,6 @@ absl::Status CheckReadable(const std::string& path) {
   return absl::OkStatus();
 }
 
-// Converts RAS to LPS, x -> -x and y -> -y, without negative zeros.
-void RasToLps(Points& vertices) { vertices.topRows<2>() = (0.0 - vertices.topRows<2>().array()).matrix(); }
-
 }  // namespace
 
 const std::vector<Format>& Formats() {
@@ -52,6 +49,8 @@ const std::vector<Format>& Formats() {
   };
   return formats;
 }
+
+void RasToLps(Points& vectors) { vectors.topRows<2>() = (0.0 - vectors.topRows<2>().array()).matrix(); }
 
 std::string Endings() {
   std::string endings;
@@ -83,12 +82,6 @@ Mesh SurfaceBuilder::ToMesh() const {
     mesh.edges = Eigen::Map<const Edges>(lines.data(), 2, static_cast<Eigen::Index>(lines.size() / 2));
   }
   return mesh;
-}
-
-Frame FrameFromText(std::string_view text, Frame fallback) {
-  if (text.find("SPACE=RAS") != std::string_view::npos) return Frame::kRas;
-  if (text.find("SPACE=LPS") != std::string_view::npos) return Frame::kLps;
-  return fallback;
 }
 
 absl::StatusOr<Surface> ParseSurface(std::string_view name, std::string_view bytes, double unit) {

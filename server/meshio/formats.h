@@ -52,6 +52,9 @@ struct Format {
 // The catalogue of formats, one row each.
 const std::vector<Format>& Formats();
 
+// Converts positions or displacements from RAS to LPS, x -> -x and y -> -y, without negative zeros.
+void RasToLps(Points& vectors);
+
 // Accumulates a mesh while parsing, in the file's order.
 struct SurfaceBuilder {
   std::vector<double> coordinates;  // x y z per vertex
@@ -64,10 +67,6 @@ struct SurfaceBuilder {
   // Keeps lines only if there are no triangles; beside triangles, lines are outlines and not a network.
   Mesh ToMesh() const;
 };
-
-// Returns the frame that "SPACE=RAS" or "SPACE=LPS" in a comment or header names (3D Slicer's convention), else
-// `fallback`.
-Frame FrameFromText(std::string_view text, Frame fallback);
 
 }  // namespace phrenic::meshio
 

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/meshio/formats.h"
+#include "server/meshio/frame.h"
 #include "server/meshio/msh_surface.h"
 #include "server/meshio/text.h"
 
@@ -26,7 +27,7 @@ class MshParser {
     }
     if (version_.version == 0) return reader_.Error("the file has no $MeshFormat; is this a Gmsh file?");
     if (absl::Status status = surface_.Check(); !status.ok()) return WithLine(status);
-    return Surface{surface_.ToMesh(), Frame::kUnspecified};
+    return Surface{surface_.ToMesh(), frame_};
   }
 
  private:
@@ -41,6 +42,7 @@ class MshParser {
     if (section == "$MeshFormat") return ReadFormat();
     if (version_.version == 0) return reader_.Error("the file does not start with $MeshFormat; is this a Gmsh file?");
     if (section == "$PhysicalNames") return ReadList("$EndPhysicalNames", &MshParser::ReadPhysicalName);
+    if (section == "$Comments") return ReadComments();
     if (section == "$Nodes") return ReadList("$EndNodes", &MshParser::ReadNode);
     if (section == "$Elements") return ReadList("$EndElements", &MshParser::ReadElement);
     return SkipTo("$End" + section.substr(1));
@@ -63,6 +65,14 @@ class MshParser {
     }
     version_ = version;
     return version_.binary || version_.version == kVersion4 ? absl::OkStatus() : SkipTo("$EndMeshFormat");
+  }
+
+  absl::Status ReadComments() {
+    while (reader_.NextLine()) {
+      if (reader_.Rest() == "$EndComments") return absl::OkStatus();
+      if (const std::string fault = ReadFrame(reader_.Rest(), frame_); !fault.empty()) return reader_.Error(fault);
+    }
+    return reader_.Error("the file ends before $EndComments");
   }
 
   absl::Status SkipTo(const std::string& end) {
@@ -122,6 +132,7 @@ class MshParser {
   TextReader reader_;
   MshVersion version_;  // 0 until $MeshFormat is read
   MshSurface surface_;
+  Frame frame_ = Frame::kUnspecified;
   std::vector<std::int64_t> nodes_;
 };
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "absl/strings/str_cat.h"
+#include "server/meshio/frame.h"
 #include "server/meshio/msh_surface.h"
 #include "server/meshio/msh_values.h"
 
@@ -28,7 +29,7 @@ class BlockParser {
       if (absl::Status status = ReadSection(section); !status.ok()) return status;
     }
     if (absl::Status status = surface_.Check(); !status.ok()) return WithPosition(status);
-    return Surface{surface_.ToMesh(), Frame::kUnspecified};
+    return Surface{surface_.ToMesh(), frame_};
   }
 
  private:
@@ -51,7 +52,10 @@ class BlockParser {
     } else if (section == "$Elements") {
       status = version_.version < 3 ? ReadElements2() : ReadElements4();
     } else {
-      return values_.SkipPast(end) ? absl::OkStatus() : values_.Error(absl::StrCat("the file ends before ", end));
+      std::string_view text;
+      if (!values_.TakeUntil(end, text)) return values_.Error(absl::StrCat("the file ends before ", end));
+      const std::string fault = section == "$Comments" ? ReadFrame(text, frame_) : "";
+      return fault.empty() ? absl::OkStatus() : values_.Error(fault);
     }
     if (!status.ok()) return status;
     if (values_.Expect(end)) return absl::OkStatus();
@@ -221,6 +225,7 @@ class BlockParser {
   MshValues values_;
   const MshVersion version_;
   MshSurface surface_;
+  Frame frame_ = Frame::kUnspecified;
   std::vector<std::int64_t> nodes_;
   std::map<std::int64_t, std::int64_t> physical_of_;  // surface entity -> physical group
 };

@@ -1,5 +1,6 @@
 // $NodeData sections of Gmsh's MSH format, version 2 text (Gmsh reference manual, "MSH file format version 2
 // (Legacy)").
+#include <cmath>
 #include <cstdint>
 #include <unordered_map>
 #include <utility>
@@ -7,6 +8,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "server/meshio/formats.h"
 #include "server/meshio/meshio.h"
 #include "server/meshio/motion.h"
 #include "server/meshio/msh_surface.h"
@@ -15,6 +17,7 @@
 namespace phrenic::meshio {
 namespace {
 
+constexpr double kMaxTime = 1e9;  // [s]
 constexpr char kView[] = "\"displacement\"";
 
 // Reads the time steps of a file. Requires: Parse has accepted the file, so the mesh's sections are valid.
@@ -91,6 +94,9 @@ class StepReader {
     if (!time_reader.NextLine() || !time_reader.Number(time)) {
       return reader_.Error("a step's first real tag is its time [s], a finite number");
     }
+    if (std::abs(time) > kMaxTime) {
+      return reader_.Error(absl::StrCat("the step's time is ", time, " s; at most ", kMaxTime, " s is accepted"));
+    }
     if (!motion_.times.empty() && time <= motion_.times.back()) {
       return reader_.Error(absl::StrCat("the time ", time, " s is not after that of the step before, ",
                                         motion_.times.back(), " s; sort the steps"));
@@ -122,7 +128,10 @@ class StepReader {
       return reader_.Error(
           absl::StrCat("the step has rows for ", rows, " of ", vertices, " nodes; it must have one for each"));
     }
-    if (!displacement.allFinite()) return reader_.Error("a displacement in metres is not finite");
+    const double largest = vertices > 0 ? displacement.cwiseAbs().maxCoeff() : 0;
+    if (!(largest <= kMaxNumber)) {
+      return reader_.Error(absl::StrCat("a displacement of ", largest, " m; at most ", kMaxNumber, " is accepted"));
+    }
     motion_.displacements.push_back(std::move(displacement));
     return absl::OkStatus();
   }
@@ -136,9 +145,9 @@ class StepReader {
 }  // namespace
 
 absl::StatusOr<Motion> ParseMotion(std::string_view name, std::string_view bytes, double unit) {
-  absl::StatusOr<Mesh> mesh = Parse(name, bytes, unit);
-  if (!mesh.ok()) return mesh.status();
-  Motion motion{*std::move(mesh), {}, {}};
+  absl::StatusOr<Surface> surface = ParseSurface(name, bytes, unit);
+  if (!surface.ok()) return surface.status();
+  Motion motion{std::move(surface->mesh), {}, {}};
   if (!absl::EndsWith(absl::AsciiStrToLower(std::string(name)), ".msh")) return motion;
   if (!MshIsVersion2Text(bytes)) {
     if (bytes.find(kView) == std::string_view::npos) return motion;
@@ -147,6 +156,9 @@ absl::StatusOr<Motion> ParseMotion(std::string_view name, std::string_view bytes
                      " are only read from MSH 2.2 in text; save the views in that format"));
   }
   if (absl::Status status = StepReader(name, bytes, unit, motion).Read(); !status.ok()) return status;
+  for (Points& displacement : motion.displacements) {
+    if (surface->frame == Frame::kRas) RasToLps(displacement);
+  }
   return motion;
 }
 

@@ -48,9 +48,10 @@ bool MshValues::StartBlock() {
   return true;
 }
 
-bool MshValues::SkipPast(const std::string& end) {
+bool MshValues::TakeUntil(const std::string& end, std::string_view& text) {
   const std::size_t found = bytes_.find("\n" + end, at_);
   if (found == std::string_view::npos) return false;
+  text = bytes_.substr(at_, found - at_);
   at_ = found + 1 + end.size();
   return true;
 }

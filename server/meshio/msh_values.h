@@ -30,8 +30,8 @@ class MshValues {
   std::string_view Line();
   // Moves to the start of binary data on the next line; the rest of the present line must be blank. No-op in text.
   bool StartBlock();
-  // Moves past the next line that starts with `end`.
-  bool SkipPast(const std::string& end);
+  // Moves past the next line that starts with `end`; `text` is what lies before that line.
+  bool TakeUntil(const std::string& end, std::string_view& text);
 
   // Read an int32, an int64 and a float64 in binary; a word in text.
   bool Int(std::int64_t& integer) { return binary_ ? TakeAs<std::int32_t>(integer) : TextInteger(integer); }

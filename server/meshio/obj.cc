@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/meshio/formats.h"
+#include "server/meshio/frame.h"
 #include "server/meshio/text.h"
 
 namespace phrenic::meshio {
@@ -23,6 +24,7 @@ class ObjParser {
     while (reader_.NextLine()) {
       // A comment may end in a path's backslash, which is not a continuation.
       if (reader_.Rest().substr(0, 1) != "#") reader_.JoinContinuedLine();
+      if (const std::string fault = ReadComment(reader_.Rest()); !fault.empty()) return reader_.Error(fault);
       if (absl::Status status = ReadStatement(reader_.Word()); !status.ok()) return status;
     }
     if (absl::Status status = CheckComplete(); !status.ok()) return status;
@@ -30,12 +32,14 @@ class ObjParser {
   }
 
  private:
+  // Reads the frame in a line's comment. Returns the fault, or an empty text.
+  std::string ReadComment(std::string_view line) {
+    const std::size_t start = line.find('#');
+    return start == std::string_view::npos ? "" : ReadFrame(line.substr(start), frame_);
+  }
+
   absl::Status ReadStatement(std::string_view keyword) {
-    if (keyword.empty()) return absl::OkStatus();
-    if (keyword[0] == '#') {
-      frame_ = FrameFromText(keyword, FrameFromText(reader_.Rest(), frame_));
-      return absl::OkStatus();
-    }
+    if (keyword.empty() || keyword[0] == '#') return absl::OkStatus();
     if (keyword == "v") return ReadVertex();
     if (keyword == "f") return ReadFace();
     if (keyword == "l") return ReadLine();

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/meshio/frame.h"
 
 namespace phrenic::meshio {
 namespace {
@@ -62,8 +63,8 @@ class HeaderReader {
 
   absl::Status ReadStatement(const std::string& keyword) {
     if (keyword == "comment" || keyword == "obj_info") {
-      header_.frame = FrameFromText(reader_.Rest(), header_.frame);
-      return absl::OkStatus();
+      const std::string fault = ReadFrame(reader_.Rest(), header_.frame);
+      return fault.empty() ? absl::OkStatus() : reader_.Error(fault);
     }
     if (keyword == "element") return ReadElement();
     if (keyword == "property") return ReadProperty();

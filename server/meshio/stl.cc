@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/meshio/bytes.h"
 #include "server/meshio/formats.h"
+#include "server/meshio/frame.h"
 #include "server/meshio/text.h"
 
 namespace phrenic::meshio {
@@ -75,9 +76,9 @@ class TextParser {
  private:
   absl::Status ReadStatement(const std::string& keyword) {
     if (keyword == "solid" && !inside_) {
-      frame_ = FrameFromText(reader_.Rest(), frame_);
       inside_ = true;
-      return absl::OkStatus();
+      const std::string fault = ReadFrame(reader_.Rest(), frame_);
+      return fault.empty() ? absl::OkStatus() : reader_.Error(fault);
     }
     if (!inside_) return reader_.Error(absl::StrCat("\"solid\" is expected, not ", Quoted(keyword)));
     if (keyword == "facet") return ReadFacet();
@@ -142,6 +143,10 @@ absl::Status CheckSize(std::string_view name, std::string_view bytes) {
 
 absl::StatusOr<Surface> ParseBinary(std::string_view name, std::string_view bytes) {
   if (absl::Status status = CheckSize(name, bytes); !status.ok()) return status;
+  Frame frame = Frame::kUnspecified;
+  if (const std::string fault = ReadFrame(bytes.substr(0, kHeader), frame); !fault.empty()) {
+    return ByteReader(name, bytes, 0).Error(fault);
+  }
   ByteReader reader(name, bytes, SizeOf(0));
   Welder welder;
   while (reader.Skip(kNormal)) {
@@ -156,7 +161,7 @@ absl::StatusOr<Surface> ParseBinary(std::string_view name, std::string_view byte
     }
     reader.Skip(sizeof(std::uint16_t));
   }
-  return Surface{welder.ToMesh(), FrameFromText(bytes.substr(0, kHeader), Frame::kUnspecified)};
+  return Surface{welder.ToMesh(), frame};
 }
 
 bool IsText(std::string_view bytes) {
@@ -186,9 +191,7 @@ absl::StatusOr<std::string> WriteStl(const Mesh& mesh) {
     const Eigen::Vector3d a = mesh.vertices.col(triangle[0]), b = mesh.vertices.col(triangle[1]);
     const Eigen::Vector3d c = mesh.vertices.col(triangle[2]), normal = (b - a).cross(c - a).stableNormalized();
     for (const Eigen::Vector3d& row : {normal, a, b, c}) {
-      const Eigen::Vector3f small = row.cast<float>();
-      if (!small.allFinite()) return absl::InvalidArgumentError("a coordinate is too large for STL's float32");
-      for (const float number : small) AppendBytes(bytes, number);
+      for (const double number : row) AppendBytes(bytes, static_cast<float>(number));
     }
     AppendBytes(bytes, std::uint16_t{0});
   }

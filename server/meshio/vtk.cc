@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/meshio/bytes.h"
 #include "server/meshio/formats.h"
+#include "server/meshio/frame.h"
 #include "server/meshio/text.h"
 #include "server/meshio/vtk_cells.h"
 
@@ -97,7 +98,7 @@ class LegacyParser {
     if (version.substr(0, 22) != "# vtk DataFile Version") {
       return Error("the file does not begin with \"# vtk DataFile Version\"; is this a .vtk file?");
     }
-    frame_ = FrameFromText(Line(), frame_);
+    if (const std::string fault = ReadFrame(Line(), frame_); !fault.empty()) return Error(fault);
     const std::string kind = absl::AsciiStrToUpper(std::string(Word()));
     if (kind != "ASCII" && kind != "BINARY") return Error("the third line is neither ASCII nor BINARY");
     if (absl::AsciiStrToUpper(std::string(Word())) != "DATASET") return Error("the fourth line has no DATASET");
@@ -260,6 +261,7 @@ class LegacyParser {
     if (type == "string") return ReadTexts(name, count);
     const int size = BytesOf(type);
     if (size == 0) return Error(absl::StrCat("there is no type ", Quoted(type)));
+    if (IsFrameField(name)) return Error("the field SPACE is not a string; state LPS or RAS there, or remove it");
     for (std::int64_t i = 0; !binary_ && i < count; ++i) {
       if (Word().empty()) return Error("the file ends within an array");
     }
@@ -282,7 +284,8 @@ class LegacyParser {
         text = bytes_.substr(at_ + 1, static_cast<unsigned char>(bytes_[at_]) & kLengthBits);
         at_ = std::min(at_ + 1 + text.size(), bytes_.size());
       }
-      if (name == "SPACE") frame_ = FrameFromField(text, frame_);
+      if (!IsFrameField(name)) continue;
+      if (const std::string fault = ReadFrameField(text, frame_); !fault.empty()) return Error(fault);
     }
     return absl::OkStatus();
   }

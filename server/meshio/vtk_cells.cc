@@ -51,10 +51,4 @@ std::string VtkCells::Fault() const {
                       builder_.vertices(), ", from 0");
 }
 
-Frame FrameFromField(std::string_view text, Frame fallback) {
-  if (text == "RAS") return Frame::kRas;
-  if (text == "LPS") return Frame::kLps;
-  return FrameFromText(text, fallback);
-}
-
 }  // namespace phrenic::meshio

@@ -35,9 +35,6 @@ class VtkCells {
   std::int64_t min_index_ = 0, max_index_ = -1;  // of all corners, before clamping
 };
 
-// Returns the frame that the field "SPACE" names, "RAS", "LPS" or "SPACE=RAS", else `fallback`.
-Frame FrameFromField(std::string_view text, Frame fallback);
-
 }  // namespace phrenic::meshio
 
 #endif  // PHRENIC_SERVER_MESHIO_VTK_CELLS_H_

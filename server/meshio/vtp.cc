@@ -8,6 +8,7 @@
 #include "server/mesh/polydata.h"
 #include "server/meshio/bytes.h"
 #include "server/meshio/formats.h"
+#include "server/meshio/frame.h"
 #include "server/meshio/text.h"
 #include "server/meshio/vtk_arrays.h"
 #include "server/meshio/vtk_cells.h"
@@ -30,7 +31,9 @@ class XmlParser {
     const pugi::xml_node root = document_.child("VTKFile");
     if (absl::Status status = ReadRoot(root); !status.ok()) return status;
     const pugi::xml_node data = root.child("PolyData");
-    ReadFrame(data.child("FieldData"));
+    for (const pugi::xml_node field : data.children("FieldData")) {
+      if (absl::Status status = ReadFields(field); !status.ok()) return status;
+    }
     for (const pugi::xml_node piece : data.children("Piece")) {
       if (absl::Status status = ReadPiece(piece); !status.ok()) return status;
     }
@@ -84,19 +87,27 @@ class XmlParser {
     return {Attribute(node, "type"), Attribute(node, "format"), node.child_value(), Attribute(node, "offset")};
   }
 
-  // Reads 3D Slicer's field SPACE, a String array of character codes ended by 0. Ignores an unreadable one.
-  void ReadFrame(pugi::xml_node field) {
-    const pugi::xml_node node = field.find_child_by_attribute("Name", "SPACE");
-    VtkArray array = ArrayOf(node);
-    if (array.type != "String") return;
+  // Reads 3D Slicer's field SPACE.
+  absl::Status ReadFields(pugi::xml_node fields) {
+    for (const pugi::xml_node field : fields.children()) {
+      if (!IsFrameField(Attribute(field, "Name"))) continue;
+      const std::string fault = ReadFrameArray(ArrayOf(field));
+      if (!fault.empty()) return Error(field, fault);
+    }
+    return absl::OkStatus();
+  }
+
+  // Reads a String array of character codes ended by 0. Returns the fault, or an empty text.
+  std::string ReadFrameArray(VtkArray array) {
+    const bool text_array = array.type == "String";
     array.type = "UInt8";
     const auto characters = ReadIntegers(array, encoding_);
-    if (!characters.ok()) return;
+    if (!text_array || !characters.ok()) return "the field SPACE is not a string; state LPS or RAS there, or remove it";
     std::string text;
     for (const std::int64_t character : *characters) {
-      if (character > 0 && character < 128) text += static_cast<char>(character);
+      if (character != 0) text += character > 0 && character < 128 ? static_cast<char>(character) : '?';
     }
-    frame_ = FrameFromField(text, frame_);
+    return ReadFrameField(text, frame_);
   }
 
   absl::Status ReadPiece(pugi::xml_node piece) {

@@ -10,6 +10,7 @@ namespace phrenic::study {
 namespace {
 
 constexpr double kGrowthCompiled = 0.5;  // fraction of the progress
+constexpr double kSheetsUntil = 0.93;    // fraction of the budget
 constexpr int kSmallestSheet = 5000;     // vertices
 constexpr int kLargestOverSmallest = 8;  // least ratio of the sheets' sizes
 constexpr double kCell = 0.01;           // edge of a sheet's cells [m]
@@ -32,12 +33,23 @@ Timing MakeTiming(const Subject& subject, int steps) {
   return {.subject = subject, .steps = std::min(steps, most), .step_s = {}, .part_s = {}, .problem = ""};
 }
 
+// True, and noted, if the series that began at `began` [s] is out of time before its member i. Each member takes about
+// as long as all before it.
+bool IsTooLate(size_t i, double began, const std::string& what, CostBudget& budget) {
+  const double took = i > 0 ? budget.spent() - began : 0;
+  if (budget.LeftUntil(kSheetsUntil) > took) return false;
+  budget.Cut(what + " are left out", took);
+  return true;
+}
+
 absl::StatusOr<std::vector<Timing>> Sheets(const v1::CreateStudyRequest& request, const Subject& subject,
-                                           const Compiler& compile, const Progress& progress) {
+                                           const Compiler& compile, CostBudget& budget, const Progress& progress) {
   std::vector<Timing> timings;
   const std::vector<int> sizes = SheetSizes(request.cost().largest_sheet());
+  const double began = budget.spent();
   for (size_t i = 0; i < sizes.size(); ++i) {
     const double done = static_cast<double>(i) / static_cast<double>(sizes.size());
+    if (IsTooLate(i, began, absl::StrCat("sheets of springs from ", sizes[i], " vertices"), budget)) break;
     if (!progress(done, absl::StrCat("making a sheet of ", sizes[i], " vertices"))) return Cancelled();
     v1::SceneSource source;
     *source.mutable_scene() = SheetOf(sizes[i]);
@@ -50,12 +62,14 @@ absl::StatusOr<std::vector<Timing>> Sheets(const v1::CreateStudyRequest& request
 }
 
 absl::StatusOr<std::vector<Timing>> Resolutions(const v1::CreateStudyRequest& request, const Compiler& compile,
-                                                const Progress& progress) {
+                                                CostBudget& budget, const Progress& progress) {
   std::vector<Timing> timings;
   std::vector<double> sizes(request.cost().resolutions_mm().begin(), request.cost().resolutions_mm().end());
   std::sort(sizes.rbegin(), sizes.rend());
+  const double began = budget.spent();
   for (size_t i = 0; i < sizes.size(); ++i) {
     const double done = static_cast<double>(i) / static_cast<double>(sizes.size());
+    if (IsTooLate(i, began, absl::StrCat("the scene from ", sizes[i], " mm"), budget)) break;
     if (!progress(done, absl::StrCat("making the scene at ", sizes[i], " mm"))) return Cancelled();
     v1::SceneSource source = request.source();
     source.set_resolution_mm(sizes[i]);
@@ -108,14 +122,18 @@ v1::Scene SheetOf(int vertices) {
 }
 
 absl::Status AddGrowth(const v1::CreateStudyRequest& request, const Subject& subject, const Compiler& compile,
-                       const Progress& progress, v1::CostTable& table) {
-  auto sheets = Sheets(request, subject, compile, Part(progress, 0, kGrowthCompiled / 2));
+                       CostBudget& budget, const Progress& progress, v1::CostTable& table) {
+  auto sheets = Sheets(request, subject, compile, budget, Part(progress, 0, kGrowthCompiled / 2));
   if (!sheets.ok()) return sheets.status();
-  auto resolutions = Resolutions(request, compile, Part(progress, kGrowthCompiled / 2, kGrowthCompiled));
+  auto resolutions = Resolutions(request, compile, budget, Part(progress, kGrowthCompiled / 2, kGrowthCompiled));
   if (!resolutions.ok()) return resolutions.status();
   const int trials = request.cost().trials();
-  absl::Status status = TimeInterleaved(*sheets, trials, Part(progress, kGrowthCompiled, 0.8));
-  if (status.ok()) status = TimeInterleaved(*resolutions, trials, Part(progress, 0.8, 1));
+  absl::Status status = TimeInterleaved(*sheets, trials, budget.LeftUntil(kSheetsUntil), "sheets of springs", budget,
+                                        Part(progress, kGrowthCompiled, 0.8));
+  if (status.ok()) {
+    status = TimeInterleaved(*resolutions, trials, budget.LeftUntil(1), "resolutions of the scene", budget,
+                             Part(progress, 0.8, 1));
+  }
   if (!status.ok()) return status;
   const double of_sheets = AddRows("sheet of springs", *sheets, table);
   const double of_resolutions = AddRows("the scene, refined", *resolutions, table);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "absl/strings/str_cat.h"
 #include "server/study/cost_parts.h"
 #include "server/study/cost_trials.h"
 #include "server/study/subject.h"
@@ -12,9 +13,10 @@
 namespace phrenic::study {
 namespace {
 
-constexpr double kSizesCompiled = 0.6;  // fraction of the progress
-constexpr double kTolerance = 0.01;     // relative, of the thesis' number of vertices
-constexpr int kIterations = 3;          // of the resolution for that number
+constexpr double kSizesCompiled = 0.6;                     // fraction of the progress
+constexpr double kTolerance = 0.01;                        // relative, of the thesis' number of vertices
+constexpr int kIterations = 3;                             // of the resolution for that number
+constexpr double kMeshedUntil = 0.75, kTimedUntil = 0.85;  // fractions of the budget
 constexpr int kCubeVertices = 8;
 constexpr int kCubeSteps = 100'000;  // of a trial of figure 5.10
 
@@ -80,12 +82,18 @@ void AddRow(const ThesisSize& thesis, const Sized& sized, const Timing& with, co
             v1::CostTable& table) {
   v1::SizeRow& row = *table.add_sizes();
   row.set_what(thesis.what);
+  AddTrials(thesis.what, with, table);
+  AddTrials(absl::StrCat(thesis.what, ", without links"), without, table);
   if (sized.resolution_mm > 0) row.set_resolution_mm(sized.resolution_mm);
   row.set_vertices(with.subject.model->report.simulated_vertices());
   row.set_links(with.subject.model->report.rigid_links());
   row.set_steps_per_s(1 / Median(with.step_s));
   row.set_steps_per_s_without_links(1 / Median(without.step_s));
   row.set_links_cost_percent(100 * (MedianRatio(with, without) - 1));
+  const std::vector<double> ratios = MedianRatioOfTrials(with, without);
+  const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
+  row.set_links_cost_least_percent(100 * (*least - 1));
+  row.set_links_cost_most_percent(100 * (*most - 1));
   row.set_thesis_vertices(thesis.vertices);
   if (thesis.links > 0) row.set_thesis_links(thesis.links);
   row.set_thesis_steps_per_s(thesis.with_links);
@@ -104,17 +112,31 @@ std::vector<ThesisSize> SizesFor(const Model& model) {
   })};
 }
 
+// Estimates the time [s] to mesh size i: in proportion to the vertices, after the sizes before took `spent` [s]. 0 for
+// the first.
+double TimeToMesh(const std::vector<ThesisSize>& sizes, size_t i, double spent) {
+  double vertices = 0;
+  for (size_t before = 0; before < i; ++before) vertices += sizes[before].vertices;
+  return vertices > 0 ? spent * sizes[i].vertices / vertices : 0;
+}
+
 double Squared(double x) { return x * x; }
 
 }  // namespace
 
 absl::Status AddSizes(const v1::CreateStudyRequest& request, const Subject& subject, const Compiler& compile,
-                      const Progress& progress, v1::CostTable& table) {
+                      CostBudget& budget, const Progress& progress, v1::CostTable& table) {
   if (subject.model->report.rigid_links() == 0) return absl::OkStatus();
   const std::vector<ThesisSize> sizes = SizesFor(*subject.model);
   std::vector<Sized> made;
   std::vector<Timing> timings;
+  const double began = budget.spent();
   for (size_t i = 0; i < sizes.size(); ++i) {
+    const double takes = TimeToMesh(sizes, i, budget.spent() - began);
+    if (takes > budget.LeftUntil(kMeshedUntil)) {
+      budget.Cut(absl::StrCat("meshes of figures 5.14-5.27 from ", sizes[i].vertices, " vertices are left out"), takes);
+      break;
+    }
     const double done = kSizesCompiled * static_cast<double>(i) / static_cast<double>(sizes.size());
     if (!progress(done, "meshing for figures 5.14-5.27")) return Cancelled();
     absl::StatusOr<Sized> sized = Sized{.subject = subject, .resolution_mm = 0};
@@ -127,9 +149,11 @@ absl::Status AddSizes(const v1::CreateStudyRequest& request, const Subject& subj
     timings.push_back({.subject = *without, .steps = steps, .step_s = {}, .part_s = {}, .problem = ""});
     made.push_back(*std::move(sized));
   }
-  absl::Status status = TimeInterleaved(timings, request.cost().trials(), Part(progress, kSizesCompiled, 1));
+  absl::Status status =
+      TimeInterleaved(timings, request.cost().trials(), budget.LeftUntil(kTimedUntil),
+                      "sizes of figures 5.10 and 5.14-5.27", budget, Part(progress, kSizesCompiled, 1));
   if (!status.ok()) return status;
-  for (size_t i = 0; i < sizes.size(); ++i) AddRow(sizes[i], made[i], timings[2 * i], timings[2 * i + 1], table);
+  for (size_t i = 0; i < made.size(); ++i) AddRow(sizes[i], made[i], timings[2 * i], timings[2 * i + 1], table);
   return absl::OkStatus();
 }
 

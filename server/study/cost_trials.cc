@@ -19,6 +19,7 @@ constexpr double kMinTrialTime = 5e-3;  // [s]
 constexpr int kMaxTurns = 1000;         // of a trial
 constexpr double kMinPartTime = 1e-3;   // [s]; short, so that drift affects all subjects alike
 constexpr double kMinPartSteps = 16;
+constexpr int kFewestSteps = 16;  // of a trial that the budget cuts short
 
 // The run of one subject.
 struct TrialRun {
@@ -86,6 +87,21 @@ Plan PlanFor(const std::vector<Timing>& timings, const std::vector<double>& step
   return {.turns = static_cast<int>(turns), .parts = std::max(1, static_cast<int>(parts))};
 }
 
+// CPU time of a trial of all subjects [s].
+double TrialTime(const std::vector<Timing>& timings, const std::vector<double>& step_s, const Plan& plan) {
+  double sum = 0;
+  for (size_t i = 0; i < timings.size(); ++i) sum += plan.turns * timings[i].steps * step_s[i];
+  return sum;
+}
+
+// Takes fewer steps in a trial, so that one fits. Returns the fraction of the steps.
+double ShortenTrials(std::vector<Timing>& timings, double trial_s, double most_seconds) {
+  if (trial_s <= most_seconds) return 1;
+  const double fraction = most_seconds / trial_s;
+  for (Timing& timing : timings) timing.steps = std::max(kFewestSteps, static_cast<int>(fraction * timing.steps));
+  return fraction;
+}
+
 // Prepares the runs and estimates the CPU time per step of each [s].
 absl::StatusOr<std::vector<TrialRun>> WarmUp(std::vector<Timing>& timings, const Progress& progress,
                                              std::vector<double>& step_s) {
@@ -101,16 +117,36 @@ absl::StatusOr<std::vector<TrialRun>> WarmUp(std::vector<Timing>& timings, const
   return runs;
 }
 
+// Returns the median ratio over the parts [from, to).
+double MedianRatioOf(const Timing& a, const Timing& b, size_t from, size_t to) {
+  std::vector<double> ratios;
+  for (size_t i = from; i < to; ++i) {
+    if (b.part_s[i] > 0) ratios.push_back(a.part_s[i] / b.part_s[i]);
+  }
+  return Median(std::move(ratios));
+}
+
 }  // namespace
 
-absl::Status TimeInterleaved(std::vector<Timing>& timings, int trials, const Progress& progress) {
+absl::Status TimeInterleaved(std::vector<Timing>& timings, int trials, double most_seconds, const std::string& what,
+                             CostBudget& budget, const Progress& progress) {
   if (timings.empty()) return absl::OkStatus();
+  const double began = budget.spent();
   std::vector<double> warm;
   auto runs = WarmUp(timings, progress, warm);
   if (!runs.ok()) return runs.status();
+  const double trial_s = TrialTime(timings, warm, PlanFor(timings, warm));
+  const double fraction = ShortenTrials(timings, trial_s, most_seconds);
+  if (fraction < 1)
+    budget.Cut(absl::StrFormat("%s: trials are cut to %.0f %% of their steps", what, 100 * fraction), trials * trial_s);
   const Plan plan = PlanFor(timings, warm);
   const int rounds = plan.turns * plan.parts;
   for (int trial = 0; trial < trials; ++trial) {
+    const double spent = budget.spent() - began;
+    if (trial > 0 && spent * (trial + 1) / trial > most_seconds) {
+      budget.Cut(absl::StrFormat("%s: %d of %d trials were made", what, trial, trials), spent * trials / trial);
+      break;
+    }
     for (int round = 0; round < rounds; ++round) {
       const double done = (trial + static_cast<double>(round) / rounds) / trials;
       for (size_t i = 0; i < timings.size(); ++i) {
@@ -125,6 +161,16 @@ absl::Status TimeInterleaved(std::vector<Timing>& timings, int trials, const Pro
     }
   }
   return absl::OkStatus();
+}
+
+void AddTrials(const std::string& variant, const Timing& timing, v1::CostTable& table) {
+  for (size_t trial = 0; trial < timing.step_s.size(); ++trial) {
+    v1::TrialRow& row = *table.add_trials();
+    row.set_variant(variant);
+    row.set_vertices(timing.subject.model->report.simulated_vertices());
+    row.set_trial(static_cast<int64_t>(trial) + 1);
+    row.set_cpu_us_per_step(1e6 * timing.step_s[trial]);
+  }
 }
 
 double Median(std::vector<double> values) { return values.empty() ? 0 : boost::math::statistics::median(values); }
@@ -145,11 +191,17 @@ double Spread(const std::vector<double>& values) {
 }
 
 double MedianRatio(const Timing& a, const Timing& b) {
+  return MedianRatioOf(a, b, 0, std::min(a.part_s.size(), b.part_s.size()));
+}
+
+std::vector<double> MedianRatioOfTrials(const Timing& a, const Timing& b) {
+  const size_t trials = std::min(a.step_s.size(), b.step_s.size());
+  const size_t parts = trials > 0 ? std::min(a.part_s.size(), b.part_s.size()) / trials : 0;
   std::vector<double> ratios;
-  for (size_t i = 0; i < std::min(a.part_s.size(), b.part_s.size()); ++i) {
-    if (b.part_s[i] > 0) ratios.push_back(a.part_s[i] / b.part_s[i]);
+  for (size_t trial = 0; trial < trials; ++trial) {
+    ratios.push_back(MedianRatioOf(a, b, trial * parts, (trial + 1) * parts));
   }
-  return Median(std::move(ratios));
+  return ratios;
 }
 
 }  // namespace phrenic::study

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "phrenic/v1/study_results.pb.h"
+#include "server/study/cost_budget.h"
 #include "server/study/trajectory.h"
 
 namespace phrenic::study {
@@ -19,9 +21,14 @@ struct Timing {
 };
 
 // Runs `trials` trials of each subject from rest, in round-robin order over short parts of a trial. The steps of a
-// trial are repeated until the fastest subject takes at least 5 ms. CANCELLED if `progress` returns false. Uses one
-// thread.
-absl::Status TimeInterleaved(std::vector<Timing>& timings, int trials, const Progress& progress);
+// trial are repeated until the fastest subject takes at least 5 ms. Takes fewer steps, then fewer trials, but at least
+// one, if they do not fit into `most_seconds` of wall time, and notes it as `what`. CANCELLED if `progress` returns
+// false. Uses one thread.
+absl::Status TimeInterleaved(std::vector<Timing>& timings, int trials, double most_seconds, const std::string& what,
+                             CostBudget& budget, const Progress& progress);
+
+// Appends the timing's trials.
+void AddTrials(const std::string& variant, const Timing& timing, v1::CostTable& table);
 
 // Returns the median; 0 if there are no values.
 double Median(std::vector<double> values);
@@ -31,6 +38,8 @@ double MiddleMean(std::vector<double> values);
 double Spread(const std::vector<double>& values);
 // Returns the median over parts of the ratio of a's time to b's in the same part.
 double MedianRatio(const Timing& a, const Timing& b);
+// Returns the same of each trial: how far the ratio repeats.
+std::vector<double> MedianRatioOfTrials(const Timing& a, const Timing& b);
 
 }  // namespace phrenic::study
 

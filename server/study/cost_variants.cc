@@ -13,7 +13,8 @@
 namespace phrenic::study {
 namespace {
 
-constexpr double kCompiled = 0.3;  // fraction of the progress
+constexpr double kCompiled = 0.3;                                           // fraction of the progress
+constexpr double kVariantsCompiledUntil = 0.25, kVariantsTimedUntil = 0.4;  // fractions of the budget
 
 // One row before it is timed.
 struct Variant {
@@ -87,7 +88,7 @@ absl::Status AddPart(const v1::CreateStudyRequest& request, const Subject& subje
 }
 
 absl::StatusOr<Variants> MakeVariants(const v1::CreateStudyRequest& request, const Subject& subject,
-                                      const Compiler& compile, const Progress& progress) {
+                                      const Compiler& compile, CostBudget& budget, const Progress& progress) {
   Variants all;
   const bool links = subject.model->report.rigid_links() > 0;
   all.Add({.name = "full", .note = "", .never_had = 0, .trial = links ? ThesisTrial::kFull : ThesisTrial::kNoLinks},
@@ -99,8 +100,15 @@ absl::StatusOr<Variants> MakeVariants(const v1::CreateStudyRequest& request, con
   all.Add({.name = "full, repeated", .note = "noise of the measurement", .never_had = 0, .trial = {}}, *repeated,
           request.cost().steps());
   const std::vector<std::string> parts = PartsOf(subject.model->scene);
+  const double began = budget.spent();
   for (size_t i = 0; i < parts.size(); ++i) {
     const double done = static_cast<double>(i) / static_cast<double>(parts.size());
+    const double took = i > 0 ? (budget.spent() - began) / static_cast<double>(i) : 0;
+    if (took > budget.LeftUntil(kVariantsCompiledUntil)) {
+      budget.Cut(absl::StrCat("the scene without ", parts[i], " and what follows is left out"),
+                 took * static_cast<double>(parts.size() - i));
+      break;
+    }
     if (!progress(done, "compiling the scene without " + parts[i])) return Cancelled();
     absl::Status status = AddPart(request, subject, parts[i], compile, all);
     if (!status.ok()) return status;
@@ -137,6 +145,7 @@ void AddRow(const Variants& all, size_t index, v1::CostTable& table) {
   row.set_note(timing.problem.empty() || variant.note.empty() ? variant.note + timing.problem
                                                               : absl::StrCat(variant.note, "; ", timing.problem));
   SetTimes(timing, row);
+  AddTrials(variant.name, timing, table);
   row.set_share(MedianRatio(timing, all.timings.front()));
   if (variant.never_had != index) row.set_over_never_had(MedianRatio(timing, all.timings[variant.never_had]));
   SetThesis(variant, *all.timings.front().subject.model, row);
@@ -145,10 +154,11 @@ void AddRow(const Variants& all, size_t index, v1::CostTable& table) {
 }  // namespace
 
 absl::Status AddVariants(const v1::CreateStudyRequest& request, const Subject& subject, const Compiler& compile,
-                         const Progress& progress, v1::CostTable& table) {
-  auto all = MakeVariants(request, subject, compile, Part(progress, 0, kCompiled));
+                         CostBudget& budget, const Progress& progress, v1::CostTable& table) {
+  auto all = MakeVariants(request, subject, compile, budget, Part(progress, 0, kCompiled));
   if (!all.ok()) return all.status();
-  absl::Status status = TimeInterleaved(all->timings, request.cost().trials(), Part(progress, kCompiled, 1));
+  absl::Status status = TimeInterleaved(all->timings, request.cost().trials(), budget.LeftUntil(kVariantsTimedUntil),
+                                        "variants of the scene", budget, Part(progress, kCompiled, 1));
   if (!status.ok()) return status;
   for (size_t index = 0; index < all->variants.size(); ++index) AddRow(*all, index, table);
   return absl::OkStatus();

@@ -4,6 +4,7 @@
 
 #include "phrenic/v1/study.pb.h"
 #include "server/study/context.h"
+#include "server/study/cost_budget.h"
 
 namespace phrenic::study {
 
@@ -11,7 +12,7 @@ namespace phrenic::study {
 // of the measurement. A row "X left out" is compared with the row "without X" of the same trials: a ratio of 1 shows
 // that a part without effect costs nothing. Errors: those of the compile step; CANCELLED if `progress` returns false.
 absl::Status AddVariants(const v1::CreateStudyRequest& request, const Subject& subject, const Compiler& compile,
-                         const Progress& progress, v1::CostTable& table);
+                         CostBudget& budget, const Progress& progress, v1::CostTable& table);
 
 }  // namespace phrenic::study
 

@@ -25,8 +25,8 @@ absl::Status AddLimits(const Subject& subject, const v1::StabilityStudy& study, 
       row.set_integrator(NameOf(integrator));
       row.set_stiffness(factor);
       const Subject part = With(Stiffened(subject, factor), integrator);
-      absl::Status status =
-          MeasureLimit(part, study.most_seconds_a_run(), Part(progress, done / all, (done + 1) / all), row);
+      absl::Status status = MeasureLimit(part, study.seconds(), study.most_seconds_a_run(),
+                                         Part(progress, done / all, (done + 1) / all), row);
       if (!status.ok()) return status;
       ++done;
     }

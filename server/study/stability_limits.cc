@@ -1,108 +1,72 @@
 #include "server/study/stability_limits.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
 
 #include "absl/strings/str_format.h"
 #include "server/mechanics/integrators/catalogue.h"
-#include "server/mechanics/step/step.h"
-#include "server/schema/thread_cpu.h"
-#include "server/study/watched_run.h"
+#include "server/study/leaving.h"
 
 namespace phrenic::study {
 namespace {
 
 constexpr double kPerturbation = 1e-8;    // amplitude v/omega of the perturbation, in sizes of the scene
-constexpr long kSteps = 400;              // of a trial
-constexpr long kMaxSteps = 20000;         // of a trial: limits that need more are not measured
+constexpr double kTenth = 0.1;            // step of the run that trials are compared with, over the predicted limit
+constexpr long kSteps = 400;              // least number of steps of a trial at the predicted limit
+constexpr long kShortestTrial = 30;       // the same if the CPU budget cuts it
+constexpr long kMaxSteps = 20000;         // largest number: limits that need more are not measured
 constexpr double kDampings = 60;          // damping times of a trial of explicit Euler with friction
-constexpr double kGrowth = 30;            // ratio of energies of the last and the second quarter
-constexpr double kSlowGrowth = 2;         // the same for explicit Euler
-constexpr double kRunaway = 1e12;         // growth of the energy from its first value that ends a trial
+constexpr double kGrowth = 1e6;           // of the perturbation's energy: resonance below the limit stays far below it
+constexpr double kSlowGrowth = 10;        // the same for explicit Euler, and where no step is stable
 constexpr double kLimitTolerance = 0.01;  // relative, of the measured limit
 constexpr double kFirstFactor = 1.03;     // first ratio to the prediction in the search
+constexpr double kTriedStep = 0.2;        // of a trial where no step is stable, over 1/omega
 constexpr double kMaxFactor = 4;          // largest ratio to the prediction in the search
 
-// The result of a trial; kCut if it ran out of CPU time.
-enum class Trial { kBounded, kGrows, kCut };
+bool GrowsSlowly(const Subject& subject) { return subject.parameters.integrator() == v1::INTEGRATOR_EXPLICIT_EULER; }
 
-// The largest kinetic energy of the difference in each quarter of a trial [J].
-struct Quarters {
-  std::array<double, 4> largest = {};
-  double first = 0;
-
-  void Add(long step, long steps, double energy) {
-    if (step == 0) first = energy;
-    double& quarter = largest.at(static_cast<size_t>(4 * step / steps));
-    quarter = std::max(quarter, energy);
-  }
-  bool Runaway(double energy) const { return !(energy <= kRunaway * first); }
-  double Growth() const { return largest[3] / largest[1]; }
-};
-
-// Number of steps of a trial. Explicit Euler grows per step by the small difference of the energy that it adds and the
-// energy that friction dissipates.
+// Least number of steps of a trial. Explicit Euler grows per step by the small difference of the energy that it adds
+// and the energy that friction dissipates.
 double StepsToSeeGrowth(const Subject& subject, const FastestMode& fastest, double dt) {
-  if (subject.parameters.integrator() != v1::INTEGRATOR_EXPLICIT_EULER) return kSteps;
+  if (!GrowsSlowly(subject)) return kSteps;
   const double damped = fastest.spectrum.least_damping_rate * dt;
   return damped > 0 ? std::max<double>(kSteps, kDampings / damped) : kSteps;
 }
 
-// An unperturbed and a perturbed run.
-class Pair {
- public:
-  Pair(const Subject& subject, const FastestMode& fastest)
-      : subject_(subject),
-        plain_(subject.model->InitialState()),
-        perturbed_(Perturbed(subject, fastest)),
-        plain_work_(subject.model->MakeWorkspace()),
-        perturbed_work_(subject.model->MakeWorkspace()) {}
+// Simulated time of the trials [s].
+double SimulatedTime(const Subject& subject, const FastestMode& fastest, double seconds, double dt) {
+  return std::max(StepsToSeeGrowth(subject, fastest, dt) * dt, std::min(seconds, kMaxSteps * dt));
+}
 
-  bool Advance(double dt) {
-    return Step(*subject_.model, subject_.parameters, dt, plain_, plain_work_).ok() &&
-           Step(*subject_.model, subject_.parameters, dt, perturbed_, perturbed_work_).ok();
-  }
-  // Kinetic energy of the difference [J].
-  double Difference() const { return KineticEnergy(*subject_.model, perturbed_.v - plain_.v); }
-
- private:
-  const Subject& subject_;
-  State plain_, perturbed_;
-  Workspace plain_work_, perturbed_work_;
-};
-
-// Finds the step at which trials change from bounded to growing.
+// Finds the step above which the run leaves the run at a tenth of the predicted step.
 class Bisection {
  public:
-  Bisection(const Subject& subject, const FastestMode& fastest, double most_cpu_s, const Progress& progress)
-      : subject_(subject), fastest_(fastest), most_cpu_s_(most_cpu_s), progress_(progress) {
+  // A trial leaves if it gains `growth` times the perturbation's energy.
+  Bisection(const Subject& subject, const FastestMode& fastest, double growth, double most_cpu_s,
+            const Progress& progress)
+      : subject_(subject),
+        growth_(growth),
+        most_cpu_s_(most_cpu_s),
+        progress_(progress),
+        start_(Perturbed(subject, fastest)) {
     subject_.parameters.set_step_tolerance(0);
-    subject_.parameters.set_breath_force(0);
-    subject_.parameters.set_rib_motion(0);
-    subject_.parameters.set_apply_muscles(false);
   }
 
-  // Runs a trial with the step dt.
-  absl::StatusOr<Trial> Try(double dt) {
-    subject_.parameters.set_time_step(dt);
-    Pair pair(subject_, fastest_);
-    Quarters quarters;
-    const long steps = std::lround(StepsToSeeGrowth(subject_, fastest_, dt));
-    const double began = ThreadCpuSeconds();
-    for (long step = 0; step < steps; ++step) {
-      if (step % kCheckInterval == 0) {
-        if (!progress_(0.5, absl::StrFormat("measuring the limit at %.3g ms", 1e3 * dt))) return Cancelled();
-        if (ThreadCpuSeconds() - began > most_cpu_s_) return Trial::kCut;
-      }
-      if (!pair.Advance(dt)) return Trial::kGrows;
-      const double difference = pair.Difference();
-      quarters.Add(step, steps, difference);
-      if (quarters.Runaway(difference)) return Trial::kGrows;
-    }
-    const bool slow = subject_.parameters.integrator() == v1::INTEGRATOR_EXPLICIT_EULER;
-    return quarters.Growth() > (slow ? kSlowGrowth : kGrowth) ? Trial::kGrows : Trial::kBounded;
+  // Makes the run that trials are compared with. `dt` is about the step of the trials [s].
+  absl::Status Begin(double seconds, double dt) {
+    auto run = RunShortSteps(subject_, start_, seconds, kTenth * dt, most_cpu_s_, Labelled(kTenth * dt));
+    if (!run.ok()) return run.status();
+    tenth_ = *std::move(run);
+    out_of_time_ = tenth_.seconds < std::min(seconds, static_cast<double>(kShortestTrial) * dt) * (1 - 1e-9);
+    return absl::OkStatus();
   }
+
+  const ShortStepRun& tenth() const { return tenth_; }
+  bool out_of_time() const { return out_of_time_; }
+
+  // Runs a trial with the step dt.
+  absl::StatusOr<Trial> Try(double dt) { return TryStep(subject_, tenth_, dt, growth_, most_cpu_s_, Labelled(dt)); }
 
   // Bisects between a stable step and an unstable one.
   absl::Status Narrow(double low, double high, v1::LimitRow& row) {
@@ -111,7 +75,7 @@ class Bisection {
       const auto trial = Try(middle);
       if (!trial.ok()) return trial.status();
       if (*trial == Trial::kCut) return Cut(row);
-      (*trial == Trial::kBounded ? low : high) = middle;
+      (*trial == Trial::kStays ? low : high) = middle;
     }
     row.set_measured_s(std::sqrt(low * high));
     return absl::OkStatus();
@@ -122,37 +86,45 @@ class Bisection {
     const auto at = Try(predicted);
     if (!at.ok()) return at.status();
     if (*at == Trial::kCut) return Cut(row);
-    const bool up = *at == Trial::kBounded;
+    const bool up = *at == Trial::kStays;
     double last = predicted;
     for (double factor = kFirstFactor; factor < kMaxFactor * kFirstFactor; factor *= factor) {
       const double next = up ? predicted * factor : predicted / factor;
       const auto trial = Try(next);
       if (!trial.ok()) return trial.status();
       if (*trial == Trial::kCut) return Cut(row);
-      if ((*trial == Trial::kBounded) != up) return Narrow(std::min(last, next), std::max(last, next), row);
+      if ((*trial == Trial::kStays) != up) return Narrow(std::min(last, next), std::max(last, next), row);
       last = next;
     }
     row.set_note(absl::StrFormat("still %s at %.3g s", up ? "stable" : "unstable", last));
     return absl::OkStatus();
   }
 
- private:
   static absl::Status Cut(v1::LimitRow& row) {
     row.set_note("out of time: raise most_seconds_a_run");
     return absl::OkStatus();
   }
 
+ private:
+  Progress Labelled(double dt) const {
+    return [this, dt](double, std::string_view) {
+      return progress_(0.5, absl::StrFormat("measuring the limit at %.3g ms", 1e3 * dt));
+    };
+  }
+
   Subject subject_;
-  const FastestMode& fastest_;
-  double most_cpu_s_;
+  const double growth_, most_cpu_s_;
   const Progress& progress_;
+  const State start_;
+  ShortStepRun tenth_;
+  bool out_of_time_ = false;
 };
 
 const char* InWords(Trial trial) {
   switch (trial) {
-    case Trial::kBounded:
+    case Trial::kStays:
       return "stable";
-    case Trial::kGrows:
+    case Trial::kLeaves:
       return "unstable";
     case Trial::kCut:
       break;
@@ -162,10 +134,14 @@ const char* InWords(Trial trial) {
 
 // Checks by one trial that theory is right if it predicts no limit or no stable step.
 absl::Status TryOne(Bisection& bisection, double predicted, double dt, v1::LimitRow& row) {
-  const auto trial = bisection.Try(dt);
-  if (!trial.ok()) return trial.status();
   const char* const theory = predicted > 0 ? "stable at any step" : "stable at no step";
-  row.set_note(absl::StrFormat("by theory %s; measured at %.3g s: %s", theory, dt, InWords(*trial)));
+  Trial trial = Trial::kLeaves;
+  if (bisection.tenth().problem.empty()) {
+    const auto tried = bisection.Try(dt);
+    if (!tried.ok()) return tried.status();
+    trial = *tried;
+  }
+  row.set_note(absl::StrFormat("by theory %s; measured at %.3g s: %s", theory, dt, InWords(trial)));
   return absl::OkStatus();
 }
 
@@ -192,23 +168,36 @@ State Perturbed(const Subject& subject, const FastestMode& fastest) {
   return state;
 }
 
-absl::Status MeasureLimit(const Subject& subject, double most_cpu_s, const Progress& progress, v1::LimitRow& row) {
+absl::Status MeasureLimit(const Subject& subject, double seconds, double most_cpu_s, const Progress& progress,
+                          v1::LimitRow& row) {
   const FastestMode fastest = ModeOf(subject);
-  if (fastest.vertex < 0) {
+  const double omega = fastest.spectrum.omega_max;
+  if (fastest.vertex < 0 || !(omega > 0) || std::isinf(omega)) {
     row.set_note("nothing in the scene vibrates");
     return absl::OkStatus();
   }
   const double predicted = TheoreticalStep(subject, fastest);
-  Bisection bisection(subject, fastest, most_cpu_s, progress);
-  if (predicted == 0) return TryOne(bisection, predicted, 0.2 / fastest.spectrum.omega_max, row);
-  if (std::isinf(predicted)) return TryOne(bisection, predicted, kLongestStep, row);
-  row.set_predicted_s(predicted);
-  if (StepsToSeeGrowth(subject, fastest, predicted) > kMaxSteps) {
+  const bool has_limit = predicted > 0 && !std::isinf(predicted);
+  if (has_limit) row.set_predicted_s(predicted);
+  const double dt = has_limit ? predicted : predicted == 0 ? kTriedStep / omega : kLongestStep;
+  if (has_limit && StepsToSeeGrowth(subject, fastest, dt) > kMaxSteps) {
     row.set_note(
         absl::StrFormat("not measured: with friction this weak, growth needs more than %d steps to show", kMaxSteps));
     return absl::OkStatus();
   }
-  if (absl::Status status = bisection.Search(predicted, row); !status.ok()) return status;
+  const double growth = predicted == 0 || GrowsSlowly(subject) ? kSlowGrowth : kGrowth;
+  Bisection bisection(subject, fastest, growth, most_cpu_s, progress);
+  absl::Status status = bisection.Begin(SimulatedTime(subject, fastest, seconds, dt), dt);
+  if (!status.ok()) return status;
+  row.set_seconds(bisection.tenth().seconds);
+  if (bisection.out_of_time()) return Bisection::Cut(row);
+  if (!has_limit) return TryOne(bisection, predicted, dt, row);
+  if (!bisection.tenth().problem.empty()) {
+    row.set_note(
+        absl::StrFormat("not measured: at a tenth of the predicted step, the run %s", bisection.tenth().problem));
+    return absl::OkStatus();
+  }
+  if (status = bisection.Search(predicted, row); !status.ok()) return status;
   if (row.has_measured_s()) row.set_ratio(row.measured_s() / predicted);
   return absl::OkStatus();
 }

@@ -25,12 +25,13 @@ double TheoreticalStep(const Subject& subject, const FastestMode& fastest);
 State Perturbed(const Subject& subject, const FastestMode& fastest);
 
 // Measures the largest stable step to 1 % and fills in the row with it, the prediction and their ratio. Bisects on
-// whether the difference of a perturbed and an unperturbed run grows: the largest kinetic energy of the difference in
-// the last quarter of 400 steps is more than 30 times that in the second quarter. Explicit Euler grows slowly: the
-// criterion is a factor of 2 over 60/(friction rate x dt) steps, and nothing is measured above 20,000 steps. Breath and
-// muscles are off, because buckling tissue diverges at any step. If there is no number, the row's note says why.
-// CANCELLED if `progress` returns false.
-absl::Status MeasureLimit(const Subject& subject, double most_cpu_s, const Progress& progress, v1::LimitRow& row);
+// whether the perturbed run leaves the same run at a tenth of the predicted step (leaving.h) within `seconds`, at least
+// 400 and at most 20,000 steps, with breath and muscles as in the scene. Explicit Euler, which grows slowly, gets
+// 60/(friction rate x dt) steps. What collapses or buckles at a tenth of the step too is physics and not counted; if
+// the run at a tenth fails, nothing is measured. If there is no number, the row's note says why. A run takes at most
+// `most_cpu_s` [s] of CPU time. CANCELLED if `progress` returns false.
+absl::Status MeasureLimit(const Subject& subject, double seconds, double most_cpu_s, const Progress& progress,
+                          v1::LimitRow& row);
 
 }  // namespace phrenic::study
 

@@ -1,7 +1,9 @@
 #include "server/study/thesis_tables.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "absl/strings/str_format.h"
 
@@ -64,8 +66,37 @@ double LogRatio(int64_t a, int64_t b) {
   return std::abs(std::log((1.0 + static_cast<double>(a)) / (1.0 + static_cast<double>(b))));
 }
 
+// True if the value is one of two, `low` and `high`.
+bool IsEither(double value, double low, double high) { return value == low || value == high; }
+
+// True if the body's vertices are the eight corners of a box.
+bool IsBox(const v1::Polyhedron& shape) {
+  if (shape.vertices_size() != 8) return false;
+  std::set<std::array<double, 3>> corners;
+  std::array<double, 3> low, high;
+  low.fill(HUGE_VAL), high.fill(-HUGE_VAL);
+  for (const v1::Vector& vertex : shape.vertices()) {
+    const std::array<double, 3> at = {vertex.x(), vertex.y(), vertex.z()};
+    for (size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], at[axis]);
+      high[axis] = std::max(high[axis], at[axis]);
+    }
+    corners.insert(at);
+  }
+  return corners.size() == 8 && std::all_of(corners.begin(), corners.end(), [&](const auto& at) {
+           return IsEither(at[0], low[0], high[0]) && IsEither(at[1], low[1], high[1]) &&
+                  IsEither(at[2], low[2], high[2]);
+         });
+}
+
+bool IsCube(const v1::Scene& scene) {
+  return std::any_of(scene.bodies().begin(), scene.bodies().end(), [](const v1::Body& body) {
+    return body.role() == v1::ROLE_DEFORMABLE && IsBox(body.polyhedron());
+  });
+}
+
 std::optional<Kind> LikeModel(const v1::Scene& scene, int64_t vertices) {
-  if (vertices == 8) return Kind::kCube;
+  if (vertices == 8 && IsCube(scene)) return Kind::kCube;
   if (!HasDiaphragm(scene)) return std::nullopt;
   return IsOfAPatient(scene) ? Kind::kPatient : Kind::kPerfect;
 }
@@ -77,17 +108,6 @@ ThesisFigure FigureOf(const ThesisSize& size, bool links) {
 }
 
 }  // namespace
-
-ThesisFigure NearestThesisFigure(const v1::Scene& scene, const v1::CompileReport& report) {
-  const bool patient = IsOfAPatient(scene);
-  const Size* nearest = nullptr;
-  const auto log_ratio = [&](const Size& row) { return LogRatio(report.simulated_vertices(), row.size.vertices); };
-  for (const Size& row : kSizes) {
-    if ((row.kind == Kind::kPatient) != patient) continue;
-    if (nearest == nullptr || log_ratio(row) < log_ratio(*nearest)) nearest = &row;
-  }
-  return FigureOf(nearest->size, report.rigid_links() > 0);
-}
 
 std::optional<ThesisFigure> LikeThesisFigure(const v1::Scene& scene, int64_t vertices, ThesisTrial trial) {
   const std::optional<Kind> like = LikeModel(scene, vertices);

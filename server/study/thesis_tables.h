@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "phrenic/v1/report.pb.h"
 #include "phrenic/v1/scene.pb.h"
 
 namespace phrenic::study {
@@ -20,10 +19,6 @@ struct ThesisFigure {
   std::string what;  // "fig. 5.24, perfect model, high, 20909 vertices, with rigid links"
   double steps_per_second = 0;
 };
-
-// Returns the figure whose model is nearest to the scene in number of vertices, with rigid links if the scene has them:
-// of the thesis' patient if deformable bodies of the scene come from files, else of its cube and "perfect" models.
-ThesisFigure NearestThesisFigure(const v1::Scene& scene, const v1::CompileReport& report);
 
 // The part that was left out in a trial of the thesis.
 enum class ThesisTrial { kFull, kNoLinks, kNoAttachments, kNoRibs, kNoMuscles };

@@ -181,6 +181,7 @@ std::shared_ptr<const Model> Timed(const Model& model, Stages& stages) {
   timed->scene = model.scene;
   timed->parameters = model.parameters;
   timed->rest = model.rest;
+  timed->initial_velocity = model.initial_velocity;
   timed->mass = model.mass;
   timed->inverse_mass = model.inverse_mass;
   timed->size = model.size;

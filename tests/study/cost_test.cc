@@ -281,6 +281,31 @@ TEST(CostStudy, ComparesTheCubesWithFigure510) {
   EXPECT_FALSE(rows["without gravity"].has_thesis_steps_per_s());
 }
 
+TEST(CostStudy, ShowsEveryTrialAndTheSpreadOfTheLinksCost) {
+  const auto result = RunOn(FileText("cube-tensegrity"), CostRequest(200, 4));
+  ASSERT_TRUE(result.ok()) << result.status();
+  const v1::SizeRow& row = result->cost().sizes(0);
+  EXPECT_LE(row.links_cost_least_percent(), row.links_cost_percent() + 1e-9);
+  EXPECT_GE(row.links_cost_most_percent(), row.links_cost_percent() - 1e-9);
+  std::map<std::string, int> trials;
+  for (const v1::TrialRow& trial : result->cost().trials()) ++trials[trial.variant()];
+  EXPECT_EQ(trials["full"], 4);
+  EXPECT_EQ(trials["cube"], 4);
+  EXPECT_EQ(trials["cube, without links"], 4);
+}
+
+TEST(CostStudy, KeepsItsBudgetAndSaysWhatItLeftOut) {
+  v1::CreateStudyRequest request = CostRequest(1'000'000, 100);
+  request.mutable_cost()->set_most_seconds(2);
+  request.mutable_cost()->set_largest_sheet(100'000);
+  const auto result = RunOn(kSheet, request);
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_LT(result->took_s(), 60);
+  ASSERT_GT(result->cost().notes_size(), 0);
+  EXPECT_THAT(result->cost().notes(0),
+              AllOf(HasSubstr("it takes about"), HasSubstr("most_seconds"), HasSubstr("variants of the scene")));
+}
+
 TEST(CostParts, AreThoseOfTheScene) {
   const v1::Scene thorax = SceneFile("thorax");
   EXPECT_THAT(PartsOf(thorax), ElementsAre("ribs", "springs", "friction", "attachments", "muscles", "lungs", "links"));
@@ -353,6 +378,9 @@ TEST(ThesisTables, AreThoseOfTheCorrespondingModel) {
               StartsWith("fig. 5.24, patient model, high"));
   EXPECT_NEAR(LikeThesisFigure(cube, 8, ThesisTrial::kNoLinks)->steps_per_second, 29895.4, 0.1);
   EXPECT_FALSE(LikeThesisFigure(cube, 8, ThesisTrial::kNoRibs).has_value());
+  v1::Scene other = cube;
+  other.mutable_bodies(0)->mutable_polyhedron()->mutable_vertices(6)->set_x(9);
+  EXPECT_FALSE(LikeThesisFigure(other, 8, ThesisTrial::kNoLinks).has_value()) << "eight vertices, but no cube";
   EXPECT_FALSE(LikeThesisFigure(thorax, 2000, ThesisTrial::kFull).has_value());
   EXPECT_FALSE(LikeThesisFigure(sheet, 20900, ThesisTrial::kFull).has_value());
   EXPECT_EQ(LikeThesisSizes(thorax, 20900).size(), 3);

@@ -12,6 +12,7 @@
 #include "server/study/stability_limits.h"
 #include "server/study/stability_map.h"
 #include "server/study/subject.h"
+#include "server/study/watched_run.h"
 #include "tests/compile_text.h"
 #include "tests/study/run_on.h"
 
@@ -48,7 +49,7 @@ const char kHungSheet[] = R"(
 v1::LimitRow Limit(const std::string& text, v1::Integrator integrator, double factor = 1) {
   v1::LimitRow row;
   const Subject subject = With(Stiffened(SubjectOf(text), factor), integrator);
-  EXPECT_TRUE(MeasureLimit(subject, 60, kNeverCancel, row).ok());
+  EXPECT_TRUE(MeasureLimit(subject, 1, 60, kNeverCancel, row).ok());
   return row;
 }
 
@@ -105,6 +106,32 @@ TEST(Limits, OfTheThesisDampingDoNotExistForLightVertices) {
   const v1::LimitRow row = Limit(light, v1::INTEGRATOR_THESIS);
   EXPECT_FALSE(row.has_predicted_s() || row.has_measured_s());
   EXPECT_THAT(row.note(), testing::AllOf(HasSubstr("stable at no step"), HasSubstr("unstable")));
+}
+
+// A net that falls onto its fixed rim and stretches: it moves at any step, and only long steps leave its motion.
+TEST(Limits, OfAMovingSceneAreWhereRunsLeaveTheRunAtATenth) {
+  const std::string falling =
+      std::string(kHungSheet) + R"(forces { gravity { bodies: "b" acceleration { x: 9 z: 9 } } })";
+  const Subject subject = With(SubjectOf(falling), v1::INTEGRATOR_VELOCITY_VERLET);
+  v1::LimitRow row;
+  ASSERT_TRUE(MeasureLimit(subject, 3, 60, kNeverCancel, row).ok());
+  ASSERT_TRUE(row.has_predicted_s() && row.has_measured_s()) << row.note();
+  EXPECT_GE(row.seconds(), 3);
+  const auto survives = [&](double dt) {
+    const auto run = Watch(subject, subject.model->InitialState(), row.seconds(), dt, 60, kNeverCancel);
+    return run->status.ok() && run->largest_kinetic < 1e4;
+  };
+  EXPECT_TRUE(survives(0.98 * row.measured_s())) << row.DebugString();
+  EXPECT_FALSE(survives(1.02 * row.measured_s())) << row.DebugString();
+}
+
+// What collapses at every step is no instability of the step.
+TEST(Limits, AreNotLoweredByAMotionThatDivergesAtEveryStep) {
+  v1::LimitRow row;
+  const std::string torn = std::string(kChain) + R"(forces { point_load { body: "b" vertices: 3 force { x: 1e6 } } })";
+  ASSERT_TRUE(MeasureLimit(With(SubjectOf(torn), v1::INTEGRATOR_VELOCITY_VERLET), 1, 60, kNeverCancel, row).ok());
+  EXPECT_FALSE(row.has_measured_s());
+  EXPECT_THAT(row.note(), HasSubstr("not measured: at a tenth of the predicted step, the run diverges at"));
 }
 
 v1::CreateStudyRequest MapRequest() {

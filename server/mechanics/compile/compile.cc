@@ -11,6 +11,7 @@
 #include "server/mechanics/compile/bodies.h"
 #include "server/mechanics/compile/catalogue.h"
 #include "server/mechanics/compile/idle_parameters.h"
+#include "server/mechanics/compile/initial_velocities.h"
 #include "server/mechanics/compile/masses.h"
 #include "server/mechanics/compile/presets.h"
 #include "server/mechanics/compile/scene_hash.h"
@@ -182,6 +183,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   if (absl::Status status = AddBodies(source, options.limits, builder); !status.ok()) return status;
   clock.End("bodies", model.report);
   if (absl::Status status = AddElements(builder); !status.ok()) return status;
+  if (absl::Status status = AddInitialVelocities(builder); !status.ok()) return status;
   clock.End("elements", model.report);
   if (absl::Status status = AddProbes(builder); !status.ok()) return status;
   if (absl::Status status = AddMeasures(builder); !status.ok()) return status;
@@ -194,10 +196,16 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   clock.End("hash", model.report);
   if (builder.stop.Stopped()) return builder.stop.status();
   ChooseStep(model);
+  if (!(model.parameters.time_step() > 0)) {
+    return FieldError("parameters.time_step",
+                      "no stable step was found, because a stiffness over a mass is not a number: check the sizes and "
+                      "masses of the bodies, or set time_step");
+  }
   clock.End("largest step", model.report);
   if (builder.stop.Stopped()) return builder.stop.status();
   const auto compiled = std::make_shared<Model>(std::move(model));
   compiled->plan = MakeStepPlan(*compiled, AllIntegrators());
+  ProjectInitialVelocities(*compiled);
   clock.End("step plan", compiled->report);
   return compiled;
 }

@@ -140,7 +140,13 @@ absl::StatusOr<Mesh> MakeShape(const v1::Body& body, const MeshSource& source, c
   absl::StatusOr<Mesh> mesh = UncheckedShape(body, source, stop);
   if (stop.Stopped()) return stop.status();
   if (!mesh.ok()) return InBody(body, mesh.status());
+  mesh->vertices.colwise() += ToEigen(body.offset());
   if (absl::Status status = Validate(*mesh); !status.ok()) return InBody(body, status);
+  if (const double largest = mesh->vertices.cwiseAbs().maxCoeff(); largest > kMaxCoordinate) {
+    return InBody(
+        body, absl::InvalidArgumentError(absl::StrFormat(
+                  "has a coordinate of %g m; at most %g m is accepted: is the unit right?", largest, kMaxCoordinate)));
+  }
   return mesh;
 }
 

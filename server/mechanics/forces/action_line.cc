@@ -1,6 +1,7 @@
 #include "server/mechanics/forces/action_line.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -13,6 +14,19 @@ double FallOff(const v1::ActionLine& line, const Eigen::Vector3d& direction, con
   const double height = offset.dot(direction);
   if (line.fall_off() == v1::FALL_OFF_VERTICAL) return std::max(0.0, height / line.radius());
   return std::max(0.0, 1 - (offset - height * direction).norm() / line.radius());
+}
+
+// Returns which vertices an action line that was made before pulls.
+std::vector<bool> PulledBefore(const Model& model) {
+  std::vector<bool> pulled(static_cast<std::size_t>(model.rest.cols()), false);
+  for (const auto& force : model.forces) {
+    const auto* line = dynamic_cast<const ActionLine*>(force.get());
+    if (line == nullptr) continue;
+    for (Eigen::Index i = 0; i < line->share().size(); ++i) {
+      if (line->share()[i] > 0) pulled[static_cast<std::size_t>(i)] = true;
+    }
+  }
+  return pulled;
 }
 
 double Signal(const EvalContext& at) {
@@ -36,6 +50,8 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
   const Eigen::Vector3d direction = along.normalized();
   std::unique_ptr<ActionLine> force(new ActionLine(name, scene, direction));
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(builder.model.rest.cols());
+  const bool skips = scene.overlap() == v1::OVERLAP_SKIP_PULLED;
+  const std::vector<bool> pulled = skips ? PulledBefore(builder.model) : std::vector<bool>();
   std::int64_t count = 0;
   for (const int b : *bodies) {
     const BodyModel& body = builder.model.bodies[b];
@@ -43,12 +59,15 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
       const int vertex = body.first_vertex + i;
       const double weight = FallOff(scene, direction, body.mesh.vertices.col(i)) * builder.model.mass[vertex];
       if (weight == 0 || builder.model.inverse_mass[vertex] == 0) continue;
+      if (skips && pulled[static_cast<std::size_t>(vertex)]) continue;
       weights[vertex] = weight;
       ++count;
     }
   }
   if (count == 0 || (scene.force() == 0 && scene.air_load() == 0)) {
-    builder.ReportLeftOut(name, count == 0 ? "no free vertex is within its reach" : "its force is 0");
+    builder.ReportLeftOut(name, count == 0 ? (skips ? "no free vertex that no earlier line pulls is within its reach"
+                                                    : "no free vertex is within its reach")
+                                           : "its force is 0");
     return nullptr;
   }
   force->SetShare(weights / weights.sum());

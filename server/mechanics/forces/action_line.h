@@ -2,7 +2,8 @@
 //   f_i = F breath_force signal(t) w_i / sum w  [N], along the line.
 // The weight w_i is the fall-off times the mass of the area around vertex i at rest, so that the forces sum to F on any
 // mesh. Fall-off of a cylinder: max(0, 1 - d/radius), d the perpendicular distance [m]; vertical: max(0,
-// height/radius), the height above the origin [m]. With the activation a of the muscle's side, F becomes F - (1 - a)(F
+// height/radius), the height above the origin [m]. With OVERLAP_SKIP_PULLED, the weight is 0 where an action line that
+// precedes this one in the scene has a weight. With the activation a of the muscle's side, F becomes F - (1 - a)(F
 // + lung load). Trapped air adds hyperinflation times the air load, independently of the muscle.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_ACTION_LINE_H_
 #define PHRENIC_SERVER_MECHANICS_FORCES_ACTION_LINE_H_

@@ -44,6 +44,37 @@ class ElasticMeasure final : public Measure {
   std::vector<const Force*> forces_;  // of the same model
 };
 
+// True if a force of this kind stores energy by deformation: not gravity, contact, loads, pressures or active muscle.
+bool Deforms(const std::string& kind) {
+  const auto* field = v1::Force::descriptor()->FindFieldByName(kind);
+  switch (static_cast<v1::Force::KindCase>(field->number())) {
+    case v1::Force::kSprings:
+    case v1::Force::kCables:
+    case v1::Force::kMembrane:
+    case v1::Force::kSolid:
+    case v1::Force::kBending:
+    case v1::Force::kCrossLayer:
+    case v1::Force::kAttachment:
+    case v1::Force::kTargetSpring:
+      return true;
+    case v1::Force::kMuscle:
+    case v1::Force::kWallContact:
+    case v1::Force::kChestWall:
+    case v1::Force::kThoraxPressures:
+    case v1::Force::kFriction:
+    case v1::Force::kActionLine:
+    case v1::Force::kFibres:
+    case v1::Force::kGravity:
+    case v1::Force::kContact:
+    case v1::Force::kPressure:
+    case v1::Force::kLungs:
+    case v1::Force::kPointLoad:
+    case v1::Force::KIND_NOT_SET:
+      break;
+  }
+  return false;
+}
+
 absl::StatusOr<std::vector<const Force*>> ForcesWithEnergy(const v1::ElasticEnergy& scene, std::string_view path,
                                                            const ModelBuilder& builder) {
   std::vector<const Force*> forces;
@@ -55,8 +86,9 @@ absl::StatusOr<std::vector<const Force*>> ForcesWithEnergy(const v1::ElasticEner
     forces.push_back(*force);
   }
   if (scene.forces_size() > 0) return forces;
-  for (const auto& force : builder.model.forces) {
-    if (force->conservative()) forces.push_back(force.get());
+  for (std::size_t i = 0; i < builder.model.forces.size(); ++i) {
+    const Force& force = *builder.model.forces[i];
+    if (force.conservative() && Deforms(builder.model.force_kinds[i])) forces.push_back(&force);
   }
   return forces;
 }
@@ -82,7 +114,7 @@ absl::StatusOr<std::unique_ptr<Measure>> MakeElasticEnergy(const v1::ElasticEner
                                                            std::string_view path, ModelBuilder& builder) {
   auto forces = ForcesWithEnergy(scene, path, builder);
   if (!forces.ok()) return forces.status();
-  builder.ReportElement("measure", name, static_cast<std::int64_t>(forces->size()), "forces", "energy of forces");
+  builder.ReportElement("measure", name, static_cast<std::int64_t>(forces->size()), "forces", "elastic energy");
   return std::make_unique<ElasticMeasure>(name, *std::move(forces));
 }
 

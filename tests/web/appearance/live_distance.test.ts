@@ -39,6 +39,7 @@ const comparison: Comparison = {
   time: 0,
   tick: 0n,
   distance: create(SurfaceDistanceSchema),
+  warnings: [],
   distances: [0, 0, NaN],
   surface: square(0),
 };

@@ -20,6 +20,7 @@ const table = (time: number) => ({
     b: "b.obj",
     stateA: { sessionId: "thorax", body: "diaphragm", tick: 1200n, time },
     rows: [{ distance: { hdMax: 2, meanAToB: 1.5 } }],
+    warnings: ["the unit is wrong"],
   },
 });
 const words = () => (comparisons.progress.value.kind === "failed" ? comparisons.progress.value.message : "");
@@ -49,6 +50,7 @@ test("TheCurrentBodyIsComparedWithTheFile", async () => {
     time: 1.2,
     tick: 1200n,
     distance: { hdMax: 2, meanAToB: 1.5 },
+    warnings: ["the unit is wrong"],
     distances: [1, 2, NaN],
   });
 });

@@ -54,7 +54,7 @@ function referenceWords(reference: Reference): HTMLElement {
   const sentence =
     `${method || "An independent solution"} at a tolerance of ${formatDigits(toleranceM)} m, with ` +
     `${formatDigits(Number(evaluations), 9)} evaluations in ${formatDigits(cpuS, 3)} s of CPU time. Against the same ` +
-    `solution at a tenth of the tolerance its error is ${formatDigits(errorRmsMm, 3)} mm RMS and ` +
+    `solution at a tenth of the tolerance its error is ${formatDigits(errorRmsMm, 3)} mm RMS (over the vertices that move freely, as in the tables) and ` +
     `${formatDigits(errorMaxMm, 3)} mm at most; vertices move by up to ` +
     `${formatDigits(largestDisplacementMm, 3)} mm.`;
   return make("section", {}, make("h2", {}, "The reference"), make("p", {}, sentence));

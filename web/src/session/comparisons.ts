@@ -25,6 +25,8 @@ export interface Comparison {
   time: number;
   tick: bigint;
   distance: SurfaceDistance;
+  /** What makes the distances doubtful, such as a wrong unit of the file. */
+  warnings: string[];
   /** Distance of each vertex of the body [mm]; NaN for a vertex without a triangle. */
   distances: number[];
   /** The surface of the file. */
@@ -143,10 +145,10 @@ export class Comparisons {
   }
 }
 
-function resultOf({ b, stateA, rows }: ComparisonTable, distances: number[]): Omit<Comparison, "surface"> {
+function resultOf({ b, stateA, rows, warnings }: ComparisonTable, distances: number[]): Omit<Comparison, "surface"> {
   const distance = rows[0]?.distance;
   if (stateA === undefined || distance === undefined) throw new Error("the server sent an empty comparison");
-  return { file: b, body: stateA.body, time: stateA.time, tick: stateA.tick, distance, distances };
+  return { file: b, body: stateA.body, time: stateA.time, tick: stateA.tick, distance, warnings, distances };
 }
 
 function surfaceOf(mesh: ComparedMesh): Surface {

@@ -66,7 +66,8 @@ export class ComparisonCard {
       distanceTable(result.distance),
     );
     figures.ontoggle = () => (this.tableOpen = figures.open);
-    const rows = [this.legend.element, this.timeNote, ...this.drawnRow(result), this.buttons(), figures];
+    const warnings = result.warnings.map((warning) => alertMessage(warning));
+    const rows = [...warnings, this.legend.element, this.timeNote, ...this.drawnRow(result), this.buttons(), figures];
     this.resultElement.replaceChildren(...this.heading(result), ...rows);
   }
 
