@@ -14,7 +14,7 @@ namespace phrenic {
 namespace {
 
 // A chain along x of masses of 0.5 kg between two fixed ends, with springs of 1 m; every third spring may be stiffer.
-std::string Chain(const std::string& forces, double stiffness = 50, double third = 50) {
+std::string PreviewChain(const std::string& forces, double stiffness = 50, double third = 50) {
   constexpr int kFree = 11;
   std::string text =
       "name: 'chain' bodies { name: 'chain' role: ROLE_DEFORMABLE mass: 6.5 fixed_vertices: [0, 12] "
@@ -27,7 +27,7 @@ std::string Chain(const std::string& forces, double stiffness = 50, double third
          forces + "parameters { integrator: INTEGRATOR_PROJECTIVE_DYNAMICS }";
 }
 
-const char kGravity[] = "forces { gravity { bodies: 'chain' acceleration { z: -9.81 } } } ";
+const char kPreviewGravity[] = "forces { gravity { bodies: 'chain' acceleration { z: -9.81 } } } ";
 
 // A square net under tension, fixed along one side.
 const char kNet[] = R"(
@@ -70,7 +70,7 @@ double Residual(const Model& model, double dt, const State& before, const State&
   return left / f.colwise().norm().maxCoeff();
 }
 
-double Energy(const Model& model, const State& state) {
+double PreviewEnergy(const Model& model, const State& state) {
   double energy = 0.5 * state.v.colwise().squaredNorm().dot(model.mass.transpose());
   for (const auto& force : model.forces) energy += force->Energy(MakeEvalContext(model, model.parameters, state));
   return energy;
@@ -90,7 +90,7 @@ TEST(ProjectiveDynamics, IteratesTowardsBackwardEuler) {
 }
 
 TEST(ProjectiveDynamics, ConvergesToTheEquilibrium) {
-  const auto model = CompileText(Chain(kGravity));
+  const auto model = CompileText(PreviewChain(kPreviewGravity));
   v1::Parameters parameters = model->parameters;
   State still = model->InitialState(), state = still;
   Workspace work = model->MakeWorkspace();
@@ -103,17 +103,17 @@ TEST(ProjectiveDynamics, ConvergesToTheEquilibrium) {
 TEST(ProjectiveDynamics, LosesEnergyInFreeVibrationAtAnyStep) {
   std::string tense = kNet;
   tense.replace(tense.find("stiffness: 100"), 14, "stiffness: 100 rest_length_ratio: 0.5");
-  for (const std::string& scene : {std::string(kNet), tense, Chain(""), Chain("", 50, 5e7)}) {
+  for (const std::string& scene : {std::string(kNet), tense, PreviewChain(""), PreviewChain("", 50, 5e7)}) {
     const auto model = CompileText(scene);
     for (const double dt : {1.0 / 600, 1.0 / 60, 0.1, 1.0}) {
       for (const double speed : {0.1, 1.0, 10.0}) {
         State state = Disturbed(*model, speed);
         Workspace work = model->MakeWorkspace();
-        const double first = Energy(*model, state);
+        const double first = PreviewEnergy(*model, state);
         double last = first;
         for (int i = 0; i < 300; ++i) {
           ASSERT_TRUE(Step(*model, model->parameters, dt, state, work).ok());
-          const double energy = Energy(*model, state);
+          const double energy = PreviewEnergy(*model, state);
           ASSERT_LE(energy, last + 1e-9 * first) << "step " << i << " of " << dt << " s from " << speed << " m/s";
           last = energy;
         }
@@ -124,7 +124,7 @@ TEST(ProjectiveDynamics, LosesEnergyInFreeVibrationAtAnyStep) {
 
 TEST(ProjectiveDynamics, StaysBoundedWithAStiffnessRatioOfAMillion) {
   for (const double dt : {1.0 / 60, 0.1}) {
-    const auto model = CompileText(Chain(kGravity, 50, 5e7));
+    const auto model = CompileText(PreviewChain(kPreviewGravity, 50, 5e7));
     State state = Disturbed(*model, 1);
     Workspace work = model->MakeWorkspace();
     double most = 0;

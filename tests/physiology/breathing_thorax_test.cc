@@ -29,13 +29,13 @@ struct Curves {
     return {all.end() - static_cast<std::ptrdiff_t>(std::lround(seconds / kSample)), all.end()};
   }
   double Range(const std::string& name, double seconds) const {
-    const auto last = Last(name, seconds);
-    const auto [low, high] = std::minmax_element(last.begin(), last.end());
+    const auto breath = Last(name, seconds);
+    const auto [low, high] = std::minmax_element(breath.begin(), breath.end());
     return *high - *low;
   }
   double Least(const std::string& name, double seconds) const {
-    const auto last = Last(name, seconds);
-    return *std::min_element(last.begin(), last.end());
+    const auto breath = Last(name, seconds);
+    return *std::min_element(breath.begin(), breath.end());
   }
 };
 
