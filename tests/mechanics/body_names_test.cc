@@ -51,7 +51,7 @@ TEST(BodyNames, UnknownOnesAreRefusedWithThoseThereAre) {
             "bodies[0]: there is no body or layer \"layer:bare\"; there are bones, lung, bare");
   EXPECT_EQ(RefusalOfName("structure:ribs"),
             "bodies[0]: there is no structure \"ribs\"; there are diaphragm, rib, costal_cartilage, manubrium, "
-            "sternum_body, xiphoid, vertebra, lung");
+            "sternum_body, xiphoid, vertebra, lung, inner_cage");
 }
 
 TEST(BodyNames, EmptySetsAreRefused) {

@@ -153,7 +153,7 @@ TEST_F(BreathingThorax, AVentilatorMovesRelaxedDomesDown) {
   const Curves ventilated = Breathe("ventilator");
   EXPECT_GT(TidalVolume(ventilated), 0.5 * kLitre);
   EXPECT_LT(TidalVolume(ventilated), 1.1 * kLitre);
-  EXPECT_LT(ventilated.Least("right dome", 4), -0.003);
+  EXPECT_LT(ventilated.Least("left dome", 4), -0.003);
 }
 
 TEST_F(BreathingThorax, AParalysedDomeIsDrawnUp) {

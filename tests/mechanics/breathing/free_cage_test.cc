@@ -1,5 +1,5 @@
 // Laws of a rib cage that forces move, of the sheet inserted on it, and of the pressures between.
-#include "tests/mechanics/free_cage.h"
+#include "tests/mechanics/breathing/free_cage.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // A small thorax whose cage forces move: four ribs, a cylindrical wall, and a dome inserted on it.
-#ifndef PHRENIC_TESTS_MECHANICS_FREE_CAGE_H_
-#define PHRENIC_TESTS_MECHANICS_FREE_CAGE_H_
+#ifndef PHRENIC_TESTS_MECHANICS_BREATHING_FREE_CAGE_H_
+#define PHRENIC_TESTS_MECHANICS_BREATHING_FREE_CAGE_H_
 
 #include <cmath>
 #include <numbers>
@@ -75,4 +75,4 @@ inline std::string FreeCage(const std::string& forces) {
 
 }  // namespace phrenic
 
-#endif  // PHRENIC_TESTS_MECHANICS_FREE_CAGE_H_
+#endif  // PHRENIC_TESTS_MECHANICS_BREATHING_FREE_CAGE_H_
