@@ -16,7 +16,11 @@ import { tableOf } from "./table";
 /** Returns summary, plots and tables of a cost study. */
 export function costParts(table: CostTable): HTMLElement[] {
   const parts: (HTMLElement | undefined)[] = [
-    make("div", { className: "advice" }, ...[...summaryOf(table), ...table.notes].map((sentence) => make("p", {}, sentence))),
+    make(
+      "div",
+      { className: "advice" },
+      ...[...summaryOf(table), ...table.notes].map((sentence) => make("p", {}, sentence)),
+    ),
     make("h2", {}, "What a step costs"),
     variantBars(table.rows),
     stageBars(table.stages),
