@@ -40,6 +40,10 @@ describe("controls from the schema", () => {
     expect(numbers.filter((control) => control.logarithmic).map((control) => control.field)).toEqual([
       "timeStep",
       "elasticity",
+      "airwayResistance",
+      "lungCompliance",
+      "chestWallCompliance",
+      "abdominalCompliance",
     ]);
   });
 });
