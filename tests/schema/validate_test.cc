@@ -127,7 +127,7 @@ TEST(Validation, RequiredEnumsNameTheirValues) {
 TEST(Validation, RefusesUnknownEnumValues) {
   v1::Scene scene = ValidScene();
   scene.mutable_breath()->set_waveform(static_cast<v1::Waveform>(77));
-  EXPECT_EQ(Refusal(scene), "breath.waveform: 77 is not one of WAVEFORM_SINE, WAVEFORM_RAISED_COSINE");
+  EXPECT_EQ(Refusal(scene), "breath.waveform: 77 is not one of WAVEFORM_SINE, WAVEFORM_RAISED_COSINE, WAVEFORM_TRACE");
 }
 
 TEST(Validation, NamesTheIndexInAList) {
