@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "client/cli/argument_kinds.h"
 #include "client/cli/schema_options.h"
 #include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
@@ -115,7 +116,7 @@ int Watch(const Context& context, const WatchOptions& options) {
 CommandFunction SetUpWatch(CLI::App& command) {
   const auto options = std::make_shared<WatchOptions>();
   AddSession(command, options->id);
-  command.add_option("--seconds", options->seconds, "stop after this time [s]");
+  command.add_option("--seconds", options->seconds, "stop after this time [s]")->check(NumberIn(0.0, 1e7));
   command.add_option("--count", options->count, "stop after this many lines");
   command.add_option("--fps", options->frames_per_second, "lines per second, at most")->capture_default_str();
   std::set<std::string> codecs;
