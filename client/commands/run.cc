@@ -49,7 +49,7 @@ struct RunInput {
   double most_residual_mm = HUGE_VAL;
 };
 
-// Returns the limit of `--check residual_mm=LIMIT` [mm]; infinity if there is none.
+// Returns the limit of `--check residual_mm=LIMIT` [mm]; infinity without the flag.
 absl::StatusOr<double> ReadCheck(const std::string& text) {
   if (text.empty()) return HUGE_VAL;
   absl::string_view number = text;

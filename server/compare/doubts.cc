@@ -30,8 +30,8 @@ Box BoxOf(const MeasuredSurface& surface) {
 
 std::string Millimetres(double metres) { return absl::StrFormat("%.4g mm", kMillimetresAMetre * metres); }
 
-// Returns the ratio of two usual units (mm, cm, m, inch, micrometre) that is within 25 % of `ratio`; 0 if there is
-// none.
+// Returns the ratio of two usual units (mm, cm, m, inch, micrometre) that is within 25 % of `ratio`; 0 if no two
+// are.
 double RatioOfUnits(double ratio) {
   for (const double known : {10.0, 25.4, 100.0, 1000.0, 1e6}) {
     if (std::abs(std::log(ratio / known)) < std::log(1.25)) return known;

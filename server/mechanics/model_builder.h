@@ -77,7 +77,7 @@ struct ModelBuilder {
   // Adds a coordinate with inertia [J s^2/unit^2], at rest at 0, which forces move; see Coordinate. Requires: no force
   // and no constraint has been made yet; no other coordinate has the name.
   Coordinate AddCoordinate(std::string name, std::string unit, double inertia);
-  // Returns the coordinate of that name. INVALID_ARGUMENT with the path and the remedy if there is none.
+  // Returns the coordinate of that name. INVALID_ARGUMENT with the path and the remedy if it does not exist.
   absl::StatusOr<Coordinate> FindCoordinate(std::string_view name, std::string_view path) const;
   // Adds `count` coordinates that are an element's memory (ScalarCoordinate::internal), which start at 0 and which a
   // force advances (Force::AdvanceScalars). Returns the index of the first.

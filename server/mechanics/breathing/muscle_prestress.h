@@ -19,7 +19,7 @@ namespace phrenic {
 struct RestingLoad {
   int first = 0;
   ConstPoints load;      // [N]
-  ConstPoints normals;   // of contacts, into the surface; 0 where there is none
+  ConstPoints normals;   // of contacts, into the surface; 0 for vertices that touch nothing
   Eigen::VectorXd area;  // around each vertex [m^2]
   std::vector<bool> free;
 };

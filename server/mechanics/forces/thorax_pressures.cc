@@ -40,16 +40,23 @@ absl::StatusOr<std::unique_ptr<Force>> ThoraxPressures::Make(const v1::ThoraxPre
   if (!body.ok()) return body.status();
   auto wall = FindCageWall(scene.wall(), field + ".wall", builder);
   if (!wall.ok()) return wall.status();
+  const BodyModel& sheet = builder.model.bodies[body->front()];
+  const int end = sheet.first_vertex + static_cast<int>(sheet.mesh.vertices.cols());
+  for (const int vertex : (*wall)->border) {
+    if (vertex >= sheet.first_vertex && vertex < end) continue;
+    return FieldError(field + ".body", absl::StrCat("the insertion that names the wall \"", scene.wall(),
+                                                    "\" inserts another body than \"", sheet.name, "\""));
+  }
   std::unique_ptr<ThoraxPressures> force(
       new ThoraxPressures(ElementName(given, "thorax_pressures", named), scene, *std::move(wall)));
   const v1::LungPair& lungs = scene.lungs();
   force->shift_ = builder.AddCoordinate("mediastinal shift", "m^3", lungs.mediastinal_inertia());
   force->shift_damping_ = lungs.mediastinal_damping_rate() * lungs.mediastinal_inertia();
-  force->AddSheet(builder.model.bodies[body->front()], builder.model);
+  force->AddSheet(sheet, builder.model);
   force->first_scalar_ = builder.AddInternalScalars(force->name() + ":closed-airway", "m^3", 2);
   force->expiration_ = builder.AddInternalScalars(force->name() + ":expiration", "1", 1);
   builder.ReportElement(
-      "force", force->name(), builder.model.bodies[body->front()].mesh.triangles.cols(), "triangles",
+      "force", force->name(), sheet.mesh.triangles.cols(), "triangles",
       absl::StrFormat("lungs %g Pa s/m^3, abdomen %g m^3/Pa", lungs.resistance(), scene.abdomen().compliance()));
   return force;
 }
@@ -66,7 +73,7 @@ void ThoraxPressures::AddSheet(const BodyModel& body, const Model& model) {
     centre_ += area * (a + b + c) / 3;
     total += area;
   }
-  centre_ /= total;
+  if (total > 0) centre_ /= total;
   sheet_.first_vertex = body.first_vertex;
   std::vector<std::array<std::vector<std::int32_t>, 2>> around(static_cast<size_t>(rest.cols()));
   std::int32_t place = 0;
@@ -146,12 +153,24 @@ void ThoraxPressures::SetSlopes(const ConstPoints& x, const LinearField& weight,
     for (const std::int32_t at : midline_[m].left) left += Eigen::Map<const Eigen::Vector3d>(&slopes.areas[at]);
     slopes.left.col(static_cast<Eigen::Index>(m)) = left;
   }
-  // On the border the face of the cone towards the apex moves with the vertices.
+  AddConeFaces(x, weight, slopes);
+}
+
+// The face of the cones between an edge of the border and the apex moves with the edge's vertices: like a triangle of
+// the sheet it adds its area vector, and the weight's pressure on it, to both.
+void ThoraxPressures::AddConeFaces(const ConstPoints& x, const LinearField& weight, Slopes& slopes) const {
+  const Eigen::Map<const Eigen::Vector3d> slope(weight.slope);
+  const auto pressure = [&](const Eigen::Vector3d& point) { return slope.dot(point) - weight.offset; };
   const std::vector<int>& border = wall_->border;
   for (size_t i = 0; i < border.size(); ++i) {
-    const int before = border[(i + border.size() - 1) % border.size()], after = border[(i + 1) % border.size()];
-    const Eigen::Vector3d at = x.col(border[i]) - wall_->apex, along = x.col(before) - x.col(after);
-    slopes.sum.col(border[i] - sheet_.first_vertex) += at.cross(along) / 6;
+    const int ends[] = {border[i], border[(i + 1) % border.size()]};
+    const Eigen::Vector3d a = x.col(ends[0]), b = x.col(ends[1]);
+    const Eigen::Vector3d area = (b - wall_->apex).cross(a - wall_->apex) / 6;
+    const double mean = (pressure(wall_->apex) + pressure(a) + pressure(b)) / 3;
+    for (const int end : ends) {
+      slopes.sum.col(end - sheet_.first_vertex) += area;
+      slopes.push.col(end - sheet_.first_vertex) += (pressure(x.col(end)) + 3 * mean) / 4 * area;
+    }
   }
 }
 

@@ -94,6 +94,7 @@ class ThoraxPressures final : public Force {
   // Returns the slopes and cones at a moment, valid until the next call with the same scratch memory.
   const Slopes& SlopesAt(const EvalContext& at) const;
   void SetSlopes(const ConstPoints& x, const LinearField& weight, Slopes& slopes) const;
+  void AddConeFaces(const ConstPoints& x, const LinearField& weight, Slopes& slopes) const;
   // Returns dS_h/dt of each side [m^3/s].
   std::array<double, 2> Swept(const ConstPoints& v, const Slopes& slopes) const;
   // Adds right dS_right/dx + left dS_left/dx to g, 3 x simulated vertices.

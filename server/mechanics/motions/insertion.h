@@ -53,7 +53,7 @@ class Insertion final : public Motion {
 };
 
 // Returns the wall that an insertion of the scene has made of a body. INVALID_ARGUMENT with the path and the remedy if
-// there is none.
+// no insertion names the body.
 absl::StatusOr<std::shared_ptr<const CageWall>> FindCageWall(const std::string& body, std::string_view path,
                                                              const ModelBuilder& builder);
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kLimitReleases = 30;        // at most: then limits that alternate stay
 constexpr double kLimitViolated = 1e-10;  // of the length: a limit that is exceeded by more acts
-constexpr double kSlowLimit = 1e-6;       // of the fastest velocity: a slower rate is none
+constexpr double kSlowLimit = 1e-6;       // of the fastest velocity: a slower rate is taken as 0
 constexpr std::size_t kMostLinkFactors = 20'000'000;
 using LinkPair = std::pair<int, int>;
 

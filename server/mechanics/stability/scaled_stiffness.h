@@ -40,7 +40,7 @@ class ScaledStiffness final : public StiffnessSink {
   BlockMatrix blocks_;
   Eigen::VectorXd damping_;  // C's diagonal [N s/m]; the rest is shared_damping_
   OuterProducts shared_damping_;
-  std::unique_ptr<BlockMatrix> viscosity_;  // null if there is none or it does not count
+  std::unique_ptr<BlockMatrix> viscosity_;  // null if no force has viscosity, or it is left out
   double damping_weight_ = 0;
   LargeVector<Joint> joints_;
   Eigen::VectorXd scale_;

@@ -14,7 +14,8 @@ namespace {
 constexpr char kContact[] = "forces { wall_contact { bodies: 'sheet' wall: 'wall' stiffness: 1e6 largest_depth: 1 } } ";
 constexpr char kChestWall[] = "forces { chest_wall { wall: 'wall' } } ";
 constexpr char kPressures[] =
-    "forces { thorax_pressures { body: 'sheet' wall: 'wall' lungs { room: 1e-3 } abdomen { compliance: 1e-6 } } } ";
+    "forces { thorax_pressures { body: 'sheet' wall: 'wall' lungs { room: 1e-3 } abdomen { compliance: 1e-6 weight { "
+    "y: 4000 } } } } ";
 
 // A position that no symmetry makes simple, with driven vertices where the coordinates have them.
 State Disturbed(const Model& model, const Points& shift, double scale) {
@@ -63,10 +64,11 @@ void ExpectVirtualWork(const std::string& forces, double tolerance) {
 TEST(FreeCage, ContactObeysVirtualWork) { ExpectVirtualWork(kContact, 1e-4); }
 TEST(FreeCage, RecoilObeysVirtualWork) { ExpectVirtualWork(kChestWall, 1e-6); }
 
-// The sides' pressures are alike, so that the cones' common face carries no force.
-TEST(FreeCage, PressuresObeyVirtualWork) {
-  const auto model = CompileText(FreeCage(kPressures));
-  ASSERT_NE(model, nullptr);
+// As above, along a direction that leaves the pressures of both sides alike, so that the cones' common face carries no
+// force. A closed airway closed at `closed_at` [m^3].
+void ExpectWorkOfPressures(const std::string& parameters, double closed_at = 0) {
+  const auto model = CompileText(FreeCage(std::string(kPressures) + "parameters { " + parameters + " }"));
+  ASSERT_NE(model, nullptr) << parameters;
   Points start = Points::Zero(3, model->rest.cols()), direction = start;
   for (Eigen::Index i = 0; i < start.cols(); ++i) {
     const Eigen::Vector3d x = model->rest.col(i);
@@ -77,12 +79,35 @@ TEST(FreeCage, PressuresObeyVirtualWork) {
   start(pump.axis, pump.vertex) = 0.3 * pump.scale, start(bucket.axis, bucket.vertex) = 0.5 * bucket.scale;
   direction(pump.axis, pump.vertex) = 0.2, direction(bucket.axis, bucket.vertex) = -0.3;
   direction(2, pump.vertex) = 0;
+  const auto at = [&](double step) {
+    State state = Disturbed(*model, start + step * direction, 1);
+    if (closed_at != 0) state.scalars.q.head(2) = Eigen::Vector2d(1, closed_at);
+    return state;
+  };
   const double h = 1e-6;
-  const double loss = EnergyOf(*model, Disturbed(*model, start - h * direction, 1)) -
-                      EnergyOf(*model, Disturbed(*model, start + h * direction, 1));
+  const double loss = EnergyOf(*model, at(-h)) - EnergyOf(*model, at(h));
   Points free = direction;
   for (const int i : model->driven_vertices) free.col(i).setZero();
-  EXPECT_NEAR(2 * h * Dot(ForceOf(*model, Disturbed(*model, start, 1)), free), loss, 2e-3 * std::abs(loss));
+  EXPECT_NEAR(2 * h * Dot(ForceOf(*model, at(0)), free), loss, 2e-3 * std::abs(loss)) << parameters;
+}
+
+TEST(FreeCage, PressuresObeyVirtualWork) {
+  for (const char* parameters :
+       {"", "lung_compliance: 0.4", "abdominal_compliance: 0.3", "abdominal_load: 800", "airway_pressure: 900",
+        "pneumothorax_right: 0.5 pneumothorax_left: 0.5", "pleural_fluid_right: 1e-4 pleural_fluid_left: 1e-4",
+        "posture: POSTURE_UPRIGHT", "posture: POSTURE_PRONE"}) {
+    ExpectWorkOfPressures(parameters);
+  }
+}
+
+TEST(FreeCage, GasBehindAClosedAirwayObeysVirtualWork) { ExpectWorkOfPressures("airway_closed: true", 2e-4); }
+
+TEST(FreeCage, PressuresOnAnotherBodyThanTheInsertedOneAreRefused) {
+  const auto refused = TryCompileText(FreeCage(
+      "bodies { name: 'other' role: ROLE_DEFORMABLE mass: 1 grid { columns: 2 rows: 2 u { x: 0.1 } v { y: 0.1 } } } "
+      "forces { thorax_pressures { body: 'other' wall: 'wall' lungs {} abdomen {} } }"));
+  EXPECT_NE(std::string(refused.status().message()).find("forces[0].thorax_pressures.body"), std::string::npos)
+      << refused.status();
 }
 
 TEST(FreeCage, InsertedVerticesMoveWithTheWall) {
