@@ -26,7 +26,8 @@ std::vector<int> BorderPositions(const Mesh& mesh) {
   return position;
 }
 
-// Returns the neighbour of each vertex towards which the height falls most steeply; the vertex itself if all are higher.
+// Returns the neighbour of each vertex towards which the height falls most steeply; the vertex itself if all are
+// higher.
 std::vector<int> SteepestDescent(const Mesh& mesh, const Eigen::VectorXd& height) {
   std::vector<int> down(mesh.vertices.cols());
   std::iota(down.begin(), down.end(), 0);

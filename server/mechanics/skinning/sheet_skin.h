@@ -33,7 +33,8 @@ class SheetBinder {
   SheetBinder(const ModelBuilder& builder, const Triangles& triangles);
   // Returns false if the search for the foot point on this triangle's plane does not converge.
   bool FindFoot(const Eigen::Vector3i& triangle, const Eigen::Vector3d& point, TriangleBinding& foot) const;
-  // Returns the binding with the foot point inside a triangle, or nearest to inside; no corners if there is no triangle.
+  // Returns the binding with the foot point inside a triangle, or nearest to inside; no corners if there is no
+  // triangle.
   TriangleBinding Foot(const Eigen::Vector3d& point) const;
 
   const ModelBuilder& builder_;
