@@ -10,6 +10,7 @@ namespace phrenic {
 namespace {
 
 constexpr int kTurns = 96, kHeights = 48;  // of the table
+constexpr double kQuarter = kTurns / 4.0;  // entries of a quarter turn
 constexpr double kLeastRadius = 1e-6;      // below it a point has no turn [m]
 constexpr int kLevels = 60;                // of the wall between a loop and its top
 
@@ -39,7 +40,7 @@ struct WallCell {
 };
 
 WallCell WallCellAt(double turn, double height) {
-  const double column = turn * (kTurns / 4), row = std::clamp(height * (kHeights - 1), 0.0, kHeights - 1.0);
+  const double column = turn * kQuarter, row = std::clamp(height * (kHeights - 1), 0.0, kHeights - 1.0);
   const int left = std::min(static_cast<int>(column), kTurns - 1),
             below = std::min(static_cast<int>(row), kHeights - 2);
   const int right = left + 1 < kTurns ? left + 1 : 0, low = below * kTurns, high = low + kTurns;
@@ -69,8 +70,9 @@ void InnerWall::Tabulate() {
   radius_.resize(kTurns * kHeights);
   for (auto& coefficient : change_) coefficient.resize(radius_.size());
   for (int entry = 0; entry < kTurns * kHeights; ++entry) {
-    const double azimuth = AzimuthOfTurn(4.0 * (entry % kTurns) / kTurns);
-    const double z = bottom_ + height_ * (entry / kTurns) / (kHeights - 1);
+    const int row = entry / kTurns, turn = entry % kTurns;
+    const double azimuth = AzimuthOfTurn(turn / kQuarter);
+    const double z = bottom_ + height_ * row / (kHeights - 1);
     const GridCoordinates there = grid_.Locate(rest_, azimuth, z, grid_.Guess(rest_, azimuth, z));
     radius_[entry] = grid_.Polar(grid_.At(rest_, there)).radius;
     CageQuadratic change;
@@ -116,7 +118,7 @@ WallGap InnerWall::Gap(const WallTable& table, const Eigen::Vector3d& point) con
   const auto mean = [&](double low_left, double low_right, double high_left, double high_right) {
     return (1 - v) * ((1 - u) * low_left + u * low_right) + v * ((1 - u) * high_left + u * high_right);
   };
-  const double by_turn = ((1 - v) * (b.radius - a.radius) + v * (d.radius - c.radius)) * (kTurns / 4);
+  const double by_turn = ((1 - v) * (b.radius - a.radius) + v * (d.radius - c.radius)) * kQuarter;
   const double by_row = (1 - u) * (c.radius - a.radius) + u * (d.radius - b.radius);
   const double by_z = cell.inside ? by_row * (kHeights - 1) / height_ : 0;
   const double radius = std::max(std::sqrt(x * x + front * front), kLeastRadius);

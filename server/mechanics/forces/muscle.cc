@@ -14,8 +14,6 @@ namespace {
 
 constexpr std::int64_t kBatchesPerPart = 16;                         // of one thread's share of the triangles
 constexpr std::int64_t kSlicesPerPart = kVertexBlock / kGatherRows;  // and of the vertices
-constexpr double kRatesEvery = 4e-3;                                 // the longest time between two rates [s]
-constexpr int kMostStepsPerRate = 4;
 
 template <typename Number>
 struct MuscleMemory {
@@ -317,8 +315,8 @@ Muscle::Tensions Muscle::MeanRatesIn(const MuscleLayout<Number>& layout, const E
   return rates;
 }
 
-// Rates are computed in every step, or in every second to fourth if steps are short.
-void Muscle::AdvanceScalars(const EvalContext& end, std::int64_t tick, double dt, ScalarState& scalars) const {
+// Rates are computed in every step: force-velocity that follows them some steps late feeds the fastest modes.
+void Muscle::AdvanceScalars(const EvalContext& end, std::int64_t, double dt, ScalarState& scalars) const {
   if (first_activation_ >= 0) {
     const double share = dt / (activation_time_ + dt);  // implicit: stable at any step
     for (const bool right : {true, false}) {
@@ -326,10 +324,9 @@ void Muscle::AdvanceScalars(const EvalContext& end, std::int64_t tick, double dt
       activation += share * (DriveOf(end, right) - activation);
     }
   }
-  const int every = std::clamp(static_cast<int>(kRatesEvery / dt), 1, kMostStepsPerRate);
-  if (!hill_.active() || tick % every != 0) return;
+  if (!hill_.active()) return;
   const Tensions rates = std::visit([&](const auto& layout) { return MeanRatesIn(layout, end); }, layout_);
-  const double passed = every * dt, share = passed / (rate_time_ + passed);  // implicit: stable at any step
+  const double share = dt / (rate_time_ + dt);  // implicit: stable at any step
   for (int b = 0; b < FibreBundles::kCount; ++b) {
     double& rate = scalars.q[first_rate_ + b];
     rate += share * (rates[b] - rate);

@@ -70,7 +70,9 @@ void WebCall::ReleaseHold() {
 }
 
 void WebCall::OnDone(const grpc::Status& status) {
+  const std::lock_guard<std::mutex> lock(posting_);
   boost::asio::post(strand_, [self = std::move(self_), status] {
+    { const std::lock_guard<std::mutex> posted(self->posting_); }
     if (!self->cancelled_) self->handlers_.done(status, Copy(self->context_.GetServerTrailingMetadata()));
     self->handlers_ = {};
     self->work_.reset();

@@ -15,6 +15,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -63,6 +64,9 @@ class WebCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
   std::optional<boost::asio::executor_work_guard<boost::asio::any_io_executor>> work_;
   Handlers handlers_;
   std::shared_ptr<WebCall> self_;  // keeps the reactor alive until OnDone
+  // Held while gRPC's thread posts the end of the call: post uses the strand until it returns, and once the end is
+  // handled the strand's context may be gone.
+  std::mutex posting_;
   grpc::ClientContext context_;
   grpc::ByteBuffer outgoing_, incoming_;
   bool reading_ = false;
