@@ -18,6 +18,7 @@ struct SheetLayout {
   std::vector<std::int32_t> around;  // offsets in the array of areas [doubles]: four times the triangle's place
   int first_vertex = 0;              // simulated
 
+  std::ptrdiff_t vertices() const { return static_cast<std::ptrdiff_t>(first.size()) - 1; }
   std::size_t triangles() const { return kPacketTriangles * (packets[0].size() + packets[1].size()); }
 };
 
@@ -37,6 +38,11 @@ std::array<double, 2> SetAreas(const SheetLayout& layout, const double* x, const
 // to the forces of a pressure p(x) [Pa]: (s_i p(x_i) + 3 sum of area times mean p)/4 [N].
 void GatherAreas(const SheetLayout& layout, const double* areas, const double* x, const LinearField& field,
                  double* slopes, double* push);
+
+// Sums of the products of two arrays: {where `on_left` is 0, where it is 1}. All have the same size.
+std::array<double, 2> SumBySide(const std::vector<double>& on_left, const double* a, const double* b);
+// Adds to `to`: values times `right` where `on_left` is 0, times `left` where it is 1.
+void AddBySide(const std::vector<double>& on_left, double right, double left, const double* values, double* to);
 
 }  // namespace phrenic
 
