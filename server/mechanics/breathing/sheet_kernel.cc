@@ -69,24 +69,27 @@ std::array<double, 2> SetAreasHere(const SheetLayout& layout, const double* x, c
 
 #if HWY_TARGET <= HWY_AVX2
 // An area and the field's mean on it are one vector.
-HWY_INLINE void GatherAround(const SheetLayout& layout, std::size_t vertex, const double* areas, double* sum,
+HWY_INLINE void GatherAround(const std::int32_t* first, const std::int32_t* end, const double* areas, double* sum,
                              double* weighted) {
   const hn::FixedTag<double, 4> four;
   auto sums = hn::Zero(four), products = sums;
-  for (std::int32_t t = layout.first[vertex]; t < layout.first[vertex + 1]; ++t) {
-    const double* const at = areas + layout.around[t];
-    const auto area = hn::LoadU(four, at);
-    sums = hn::Add(sums, area);
-    products = hn::Add(products, hn::Mul(hn::Set(four, at[3]), area));
+  for (; first < end; first += kRingPlaces) {
+#pragma GCC unroll 8
+    for (int t = 0; t < kRingPlaces; ++t) {
+      const double* const at = areas + first[t];
+      const auto area = hn::LoadU(four, at);
+      sums = hn::Add(sums, area);
+      products = hn::Add(products, hn::Mul(hn::Set(four, at[3]), area));
+    }
   }
   hn::StoreU(sums, four, sum);
   hn::StoreU(products, four, weighted);
 }
 #else
-HWY_INLINE void GatherAround(const SheetLayout& layout, std::size_t vertex, const double* areas, double* sum,
+HWY_INLINE void GatherAround(const std::int32_t* first, const std::int32_t* end, const double* areas, double* sum,
                              double* weighted) {
-  for (std::int32_t t = layout.first[vertex]; t < layout.first[vertex + 1]; ++t) {
-    const double* const area = areas + layout.around[t];
+  for (; first < end; ++first) {
+    const double* const area = areas + *first;
     for (int k = 0; k < 3; ++k) sum[k] += area[k], weighted[k] += area[3] * area[k];
   }
 }
@@ -97,7 +100,7 @@ void GatherHere(const SheetLayout& layout, const double* areas, const double* x,
   const std::size_t vertices = layout.first.size() - 1;
   for (std::size_t i = 0; i < vertices; ++i, x += 3, slopes += 3, push += 3) {
     double sum[4] = {}, weighted[4] = {};
-    GatherAround(layout, i, areas, sum, weighted);
+    GatherAround(&layout.around[layout.first[i]], layout.around.data() + layout.first[i + 1], areas, sum, weighted);
     const double here = field.slope[0] * x[0] + field.slope[1] * x[1] + field.slope[2] * x[2] - field.offset;
     for (int k = 0; k < 3; ++k) slopes[k] = sum[k], push[k] = (here * sum[k] + 3 * weighted[k]) / 4;
   }

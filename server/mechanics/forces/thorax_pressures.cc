@@ -97,6 +97,8 @@ void ThoraxPressures::AddVertices(const std::vector<std::array<std::vector<std::
   for (size_t i = 0; i < around.size(); ++i) {
     sheet_.first.push_back(static_cast<std::int32_t>(sheet_.around.size()));
     for (const auto& places : around[i]) sheet_.around.insert(sheet_.around.end(), places.begin(), places.end());
+    const auto nothing = static_cast<std::int32_t>(4 * sheet_.triangles());
+    while (sheet_.around.size() % kRingPlaces != 0) sheet_.around.push_back(nothing);
     const auto& [right, left] = around[i];
     on_left_.insert(on_left_.end(), 3, right.empty() ? 1 : 0);
     if (!right.empty() && !left.empty()) midline_.push_back({static_cast<int>(i), left});
@@ -142,7 +144,8 @@ const ThoraxPressures::Slopes& ThoraxPressures::SlopesAt(const EvalContext& at) 
 }
 
 void ThoraxPressures::SetSlopes(const ConstPoints& x, const LinearField& weight, Slopes& slopes) const {
-  slopes.areas.resize(static_cast<Eigen::Index>(4 * sheet_.triangles()));
+  slopes.areas.resize(static_cast<Eigen::Index>(4 * sheet_.triangles() + 4));
+  slopes.areas.tail<4>().setZero();
   slopes.sum.resize(3, sheet_.vertices());
   slopes.push.resize(3, slopes.sum.cols());
   slopes.left.resize(3, static_cast<Eigen::Index>(midline_.size()));
