@@ -10,7 +10,7 @@
 namespace phrenic::faults {
 namespace {
 
-constexpr double kPatience = 30;  // [s]
+constexpr double kMostRecovery = 30;  // [s]
 
 double Now() { return absl::ToDoubleSeconds(absl::Now() - absl::UnixEpoch()); }
 
@@ -45,7 +45,7 @@ void Rig::Disturb(const std::function<void()>& fault) {
 
 // A call may fail on a busy machine or a slow line without a session being lost.
 bool Rig::StepsAgain() {
-  const double until = Now() + kPatience;
+  const double until = Now() + kMostRecovery;
   do {
     if (driver_.Step()) return true;
   } while (Now() < until);
@@ -62,7 +62,7 @@ void Rig::Recover(Tally& tally) {
     }
   }
   driver_.Connect(server_->address());
-  const bool found = driver_.FindTick(kPatience).has_value();
+  const bool found = driver_.FindTick(kMostRecovery).has_value();
   tally.recovered.push_back(Now() - disturbed_);
   if (!found || !StepsAgain()) {
     std::fprintf(stderr, "the session is lost: %s\n", driver_.error().c_str());
