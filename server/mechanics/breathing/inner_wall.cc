@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace phrenic {
@@ -43,7 +42,7 @@ struct WallCell {
 
 WallCell WallCellAt(double turn, double height) {
   const double column = turn * kQuarter, row = WithinRows(height * (kHeights - 1));
-  const int left = static_cast<int>(std::fmin(column, kTurns - 1.0)),
+  const int left = static_cast<int>(std::fmin(std::fmax(column, 0.0), kTurns - 1.0)),
             below = std::min(static_cast<int>(row), kHeights - 2);
   const int right = left + 1 < kTurns ? left + 1 : 0, low = below * kTurns, high = low + kTurns;
   return {low + left, low + right, high + left, high + right, column - left, row - below, height > 0 && height < 1};

@@ -100,7 +100,8 @@ void GatherHere(const SheetLayout& layout, const double* areas, const double* x,
   const std::size_t vertices = layout.first.size() - 1;
   for (std::size_t i = 0; i < vertices; ++i, x += 3, slopes += 3, push += 3) {
     double sum[4] = {}, weighted[4] = {};
-    GatherAround(&layout.around[layout.first[i]], layout.around.data() + layout.first[i + 1], areas, sum, weighted);
+    const std::int32_t* const around = layout.around.data();  // a last vertex may have no triangle
+    GatherAround(around + layout.first[i], around + layout.first[i + 1], areas, sum, weighted);
     const double here = field.slope[0] * x[0] + field.slope[1] * x[1] + field.slope[2] * x[2] - field.offset;
     for (int k = 0; k < 3; ++k) slopes[k] = sum[k], push[k] = (here * sum[k] + 3 * weighted[k]) / 4;
   }

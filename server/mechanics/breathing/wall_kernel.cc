@@ -108,7 +108,7 @@ struct Cell {
 HWY_INLINE Cell CellOf(const Height& at, const Turn& turn) {
   const Whole whole;
   const Vector column = hn::Mul(turn.value, Constant(kWallQuarter));
-  const Vector left = hn::Min(hn::Floor(column), Constant(kWallTurns - 1));
+  const Vector left = Clamped(hn::Floor(column), 0, kWallTurns - 1);  // also of points that are no numbers
   const Vector next = hn::Add(left, Constant(1));
   const Vector right = hn::IfThenElseZero(hn::Lt(next, Constant(kWallTurns)), next);
   const Indices row = hn::ConvertTo(whole, hn::Mul(hn::ConvertTo(Tag(), at.below), Constant(kWallTurns)));

@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
+#include <vector>
 
+#include "server/mechanics/step/step.h"
 #include "server/mechanics/step/step_plan.h"
 #include "tests/compile_text.h"
+#include "tests/mechanics/every_target.h"
 
 namespace phrenic {
 namespace {
@@ -101,6 +105,36 @@ TEST(FreeCage, PressuresObeyVirtualWork) {
 }
 
 TEST(FreeCage, GasBehindAClosedAirwayObeysVirtualWork) { ExpectWorkOfPressures("airway_closed: true", 2e-4); }
+
+// Contact, sums over the sheet and resistances.
+TEST(FreeCage, StepsToTheSameBitsOnEveryInstructionSet) {
+  const auto model = CompileText(FreeCage(std::string(kContact) + kPressures));
+  ASSERT_NE(model, nullptr);
+  const State start = Disturbed(*model, RandomShift(*model, 1, 4e-3), 1);
+  std::vector<State> ends;
+  OnEveryTarget([&] {
+    State& state = ends.emplace_back(start);
+    Workspace work = model->MakeWorkspace();
+    for (int i = 0; i < 5; ++i) ASSERT_TRUE(Step(*model, model->parameters, 1e-4, state, work).ok());
+    EXPECT_EQ(state.x, ends.front().x);
+    EXPECT_EQ(state.v, ends.front().v);
+  });
+  EXPECT_GT((ends.front().v - start.v).norm(), 0.1);
+}
+
+// A run that has diverged: no instruction set reads outside of the wall's table.
+TEST(FreeCage, ContactOfPointsThatAreNoNumbersIsHarmless) {
+  const auto model = CompileText(FreeCage(kContact));
+  ASSERT_NE(model, nullptr);
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e300}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      State state = model->InitialState();
+      state.x.row(axis).setConstant(bad);
+      OnEveryTarget([&] { ForceOf(*model, state); });
+      EnergyOf(*model, state);
+    }
+  }
+}
 
 TEST(FreeCage, PressuresOnAnotherBodyThanTheInsertedOneAreRefused) {
   const auto refused = TryCompileText(FreeCage(
