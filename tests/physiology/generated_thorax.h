@@ -17,13 +17,14 @@
 
 namespace phrenic {
 
-// Returns a shipped scene, for example "thorax", compiled.
-inline std::shared_ptr<const Model> CompileShipped(const std::string& name) {
+// Returns a shipped scene, for example "thorax", compiled; with a resolution [mm], all of its generated bodies have it.
+inline std::shared_ptr<const Model> CompileShipped(const std::string& name, double resolution_mm = 0) {
   std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/" + name + ".textproto");
   std::stringstream text;
   text << file.rdbuf();
-  return *Compile(*schema::ParseScene(name + ".textproto", text.str()), [](const v1::Body& body) {
-    return anatomy::Generate(body.anatomy(), body.generated().resolution_mm(), body.generated().sheet());
+  return *Compile(*schema::ParseScene(name + ".textproto", text.str()), [=](const v1::Body& body) {
+    return anatomy::Generate(body.anatomy(), resolution_mm > 0 ? resolution_mm : body.generated().resolution_mm(),
+                             body.generated().sheet());
   });
 }
 
