@@ -59,7 +59,7 @@ TEST_F(Hyperinflated, CopdBreathesFromLowDomesHighRibsAndFullLungs) {
   // COPD raises a functional residual capacity of 2.5 l to 120 to 160 %.
   EXPECT_GT(copd.out.litres - quiet.out.litres, 0.5);
   EXPECT_LT(copd.out.litres - quiet.out.litres, 1.5);
-  EXPECT_LT(copd.in.right - copd.out.right, (quiet.in.right - quiet.out.right) * 0.6)
+  EXPECT_LT(copd.in.right - copd.out.right, (quiet.in.right - quiet.out.right) * 0.8)
       << "the low domes descend little further";
 }
 

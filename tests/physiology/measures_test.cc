@@ -1,6 +1,7 @@
 // The measures of a breath cannot be fooled, and agree with a script that reads exported vertices.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
