@@ -23,6 +23,8 @@ class CostBudget {
   // Notes what was left out or cut short, and the time that it takes in all [s]; `what` is a clause: "the sizes of
   // figures 5.14-5.27 are left out".
   void Cut(const std::string& what, double takes);
+  // Notes what is left out for another reason than time.
+  void Note(const std::string& what) { notes_.push_back(what); }
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:

@@ -60,12 +60,20 @@ std::string WhyLeftOut(const Model& model, const Model& never_had) {
   return "the compile step left it out";
 }
 
+// Notes that other elements of the scene need a part, so that there is no scene without it; other errors are returned.
+absl::Status NoteNeeded(const std::string& part, const absl::Status& status, CostBudget& budget) {
+  if (!absl::IsInvalidArgument(status)) return status;
+  budget.Note(absl::StrCat("the scene without ", part,
+                           " is left out, others of its elements need them: ", std::string(status.message())));
+  return absl::OkStatus();
+}
+
 absl::Status AddLeftOut(const v1::CreateStudyRequest& request, const Subject& subject, const std::string& part,
-                        size_t without, const Compiler& compile, Variants& all) {
+                        size_t without, const Compiler& compile, CostBudget& budget, Variants& all) {
   const std::optional<v1::Scene> scene = LeftOut(*subject.model, part);
   if (!scene.has_value()) return absl::OkStatus();
   const auto left_out = Recompile(request, subject, *scene, compile);
-  if (!left_out.ok()) return left_out.status();
+  if (!left_out.ok()) return NoteNeeded(part, left_out.status(), budget);
   const std::string why = WhyLeftOut(*left_out->model, *all.timings[without].subject.model);
   all.Add({.name = part + " left out", .note = why, .never_had = without, .trial = {}}, *left_out,
           request.cost().steps());
@@ -74,13 +82,14 @@ absl::Status AddLeftOut(const v1::CreateStudyRequest& request, const Subject& su
 
 // Adds the variants without one part: removed, made empty, switched off.
 absl::Status AddPart(const v1::CreateStudyRequest& request, const Subject& subject, const std::string& part,
-                     const Compiler& compile, Variants& all) {
+                     const Compiler& compile, CostBudget& budget, Variants& all) {
   const int steps = request.cost().steps();
   const auto without = Recompile(request, subject, Without(subject.model->scene, part), compile);
-  if (!without.ok()) return without.status();
+  if (!without.ok()) return NoteNeeded(part, without.status(), budget);
   const size_t index = all.variants.size();
   all.Add({.name = "without " + part, .note = "", .never_had = index, .trial = TrialWithout(part)}, *without, steps);
-  if (absl::Status status = AddLeftOut(request, subject, part, index, compile, all); !status.ok()) return status;
+  if (absl::Status status = AddLeftOut(request, subject, part, index, compile, budget, all); !status.ok())
+    return status;
   Subject off = subject;
   if (!SwitchOff(part, off.parameters)) return absl::OkStatus();
   all.Add({.name = part + " switched off", .note = "by a live parameter", .never_had = index, .trial = {}}, off, steps);
@@ -110,7 +119,7 @@ absl::StatusOr<Variants> MakeVariants(const v1::CreateStudyRequest& request, con
       break;
     }
     if (!progress(done, "compiling the scene without " + parts[i])) return Cancelled();
-    absl::Status status = AddPart(request, subject, parts[i], compile, all);
+    absl::Status status = AddPart(request, subject, parts[i], compile, budget, all);
     if (!status.ok()) return status;
   }
   return all;

@@ -19,6 +19,7 @@
 #include "server/study/thesis_tables.h"
 #include "server/study/timed_model.h"
 #include "tests/compile_text.h"
+#include "tests/mechanics/breathing/free_cage.h"
 #include "tests/study/run_on.h"
 
 namespace phrenic::study {
@@ -304,6 +305,15 @@ TEST(CostStudy, KeepsItsBudgetAndSaysWhatItLeftOut) {
   ASSERT_GT(result->cost().notes_size(), 0);
   EXPECT_THAT(result->cost().notes(0),
               AllOf(HasSubstr("it takes about"), HasSubstr("most_seconds"), HasSubstr("variants of the scene")));
+}
+
+// A dome that is inserted on a free cage: there is no scene without its ribs.
+TEST(CostStudy, LeavesOutTheScenesThatNeedThePart) {
+  const auto result =
+      RunOn(FreeCage("forces { wall_contact { bodies: 'sheet' wall: 'wall' } }").c_str(), CostRequest(20, 1));
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_THAT(result->cost().notes(), Contains(AllOf(HasSubstr("without ribs"), HasSubstr("pump handle"))));
+  EXPECT_TRUE(RowsOf(result->cost()).contains("without wall contact"));
 }
 
 TEST(CostParts, AreThoseOfTheScene) {

@@ -9,10 +9,9 @@
 namespace phrenic {
 namespace {
 
-constexpr int kTurns = 96, kHeights = 48;  // of the table
-constexpr double kQuarter = kTurns / 4.0;  // entries of a quarter turn
-constexpr double kLeastRadius = 1e-6;      // below it a point has no turn [m]
-constexpr int kLevels = 60;                // of the wall between a loop and its top
+constexpr int kTurns = kWallTurns, kHeights = kWallHeights;
+constexpr double kQuarter = kWallQuarter, kLeastRadius = kLeastWallRadius;
+constexpr int kLevels = 60;  // of the wall between a loop and its top
 
 // A measure of the azimuth, in [0, 4), and its derivatives by x and y.
 struct WallTurn {
@@ -32,6 +31,9 @@ double AzimuthOfTurn(double turn) {
   return azimuth < 0 ? azimuth + 2 * std::numbers::pi : azimuth;
 }
 
+// A row of the table; the lowest one for what is no number.
+double WithinRows(double row) { return std::fmin(std::fmax(row, 0.0), kHeights - 1.0); }
+
 // The four entries around a point of the table, and where it lies between them.
 struct WallCell {
   int low_left, low_right, high_left, high_right;
@@ -40,8 +42,8 @@ struct WallCell {
 };
 
 WallCell WallCellAt(double turn, double height) {
-  const double column = turn * kQuarter, row = std::clamp(height * (kHeights - 1), 0.0, kHeights - 1.0);
-  const int left = std::min(static_cast<int>(column), kTurns - 1),
+  const double column = turn * kQuarter, row = WithinRows(height * (kHeights - 1));
+  const int left = static_cast<int>(std::fmin(column, kTurns - 1.0)),
             below = std::min(static_cast<int>(row), kHeights - 2);
   const int right = left + 1 < kTurns ? left + 1 : 0, low = below * kTurns, high = low + kTurns;
   return {low + left, low + right, high + left, high + right, column - left, row - below, height > 0 && height < 1};
@@ -84,24 +86,8 @@ void InnerWall::Tabulate() {
   }
 }
 
-void InnerWall::Evaluate(const CagePosition& k, WallTable& table) const {
-  table.entries.resize(radius_.size());
-  table.least.assign(kHeights, std::numeric_limits<double>::infinity());
-  const auto& [p, b, pp, bb, pb] = change_;
-  for (int row = 0; row < kHeights; ++row) {
-    for (int i = row * kTurns; i < (row + 1) * kTurns; ++i) {
-      const double by_pump = p[i] + 2 * pp[i] * k.pump + pb[i] * k.bucket;
-      const double by_bucket = b[i] + 2 * bb[i] * k.bucket + pb[i] * k.pump;
-      // A quadratic: its change is the mean of its slopes at both ends.
-      const double radius = radius_[i] + k.pump * (p[i] + by_pump) / 2 + k.bucket * (b[i] + by_bucket) / 2;
-      table.entries[i] = {radius, by_pump, by_bucket};
-      table.least[row] = std::min(table.least[row], radius);
-    }
-  }
-}
-
 bool InnerWall::IsFarInside(const WallTable& table, const Eigen::Vector3d& point, double margin) const {
-  const double row = std::clamp((point.z() - bottom_) / height_ * (kHeights - 1), 0.0, kHeights - 1.0);
+  const double row = WithinRows((point.z() - bottom_) / height_ * (kHeights - 1));
   const int below = std::min(static_cast<int>(row), kHeights - 2);
   const double bound = std::min(table.least[below], table.least[below + 1]) - margin;
   const double front = grid_.axis_y() - point.y();
@@ -112,20 +98,21 @@ WallGap InnerWall::Gap(const WallTable& table, const Eigen::Vector3d& point) con
   const double x = point.x(), front = grid_.axis_y() - point.y();
   const WallTurn turn = WallTurnOf(x, front);
   const WallCell cell = WallCellAt(turn.value, (point.z() - bottom_) / height_);
-  const WallTable::Entry &a = table.entries[cell.low_left], &b = table.entries[cell.low_right],
-                         &c = table.entries[cell.high_left], &d = table.entries[cell.high_right];
   const double u = cell.u, v = cell.v;
-  const auto mean = [&](double low_left, double low_right, double high_left, double high_right) {
-    return (1 - v) * ((1 - u) * low_left + u * low_right) + v * ((1 - u) * high_left + u * high_right);
+  const auto mean = [&](const std::vector<double>& of) {
+    return (1 - v) * ((1 - u) * of[cell.low_left] + u * of[cell.low_right]) +
+           v * ((1 - u) * of[cell.high_left] + u * of[cell.high_right]);
   };
-  const double by_turn = ((1 - v) * (b.radius - a.radius) + v * (d.radius - c.radius)) * kQuarter;
-  const double by_row = (1 - u) * (c.radius - a.radius) + u * (d.radius - b.radius);
-  const double by_z = cell.inside ? by_row * (kHeights - 1) / height_ : 0;
+  const std::vector<double>& r = table.radius;
+  const double low = r[cell.low_right] - r[cell.low_left], high = r[cell.high_right] - r[cell.high_left];
+  const double left = r[cell.high_left] - r[cell.low_left], right = r[cell.high_right] - r[cell.low_right];
+  const double by_turn = ((1 - v) * low + v * high) * kQuarter;
+  const double by_z = cell.inside ? ((1 - u) * left + u * right) * (kHeights - 1) / height_ : 0;
   const double radius = std::max(std::sqrt(x * x + front * front), kLeastRadius);
-  return {.gap = radius - mean(a.radius, b.radius, c.radius, d.radius),
+  return {.gap = radius - mean(r),
           .gradient = {x / radius - by_turn * turn.by_x, -front / radius - by_turn * turn.by_y, -by_z},
-          .by_pump = -mean(a.by_pump, b.by_pump, c.by_pump, d.by_pump),
-          .by_bucket = -mean(a.by_bucket, b.by_bucket, c.by_bucket, d.by_bucket)};
+          .by_pump = -mean(table.by_pump),
+          .by_bucket = -mean(table.by_bucket)};
 }
 
 InnerWall::Follower InnerWall::Follow(const Eigen::Vector3d& point) const {

@@ -14,17 +14,9 @@
 
 #include "server/mechanics/breathing/cage_quadratic.h"
 #include "server/mechanics/breathing/wall_grid.h"
+#include "server/mechanics/breathing/wall_kernel.h"
 
 namespace phrenic {
-
-// The wall for one position of the cage: the table's entries, which bilinear interpolation reads.
-struct WallTable {
-  struct Entry {
-    double radius, by_pump, by_bucket;  // [m]
-  };
-  std::vector<Entry> entries;
-  std::vector<double> least;  // radius of each row [m]
-};
 
 // The gap of a point, g = r - R, positive outside, and its derivatives.
 struct WallGap {
@@ -41,7 +33,8 @@ class InnerWall {
   static absl::StatusOr<InnerWall> Make(const Points& rest, const std::vector<Points>& moved);
 
   // Sets `table` for a position of the cage.
-  void Evaluate(const CagePosition& k, WallTable& table) const;
+  void Evaluate(const CagePosition& k, WallTable& table) const { EvaluateWall(radius_, change_, k, table); }
+  WallFrame frame() const { return {grid_.axis_y(), bottom_, height_}; }
   // Returns the gap of a point. Points below and above the table have the gap of its border.
   WallGap Gap(const WallTable& table, const Eigen::Vector3d& point) const;
   // True if a point is closer to the axis than `margin` [m] inside of all that surrounds it: its gap is below -margin.

@@ -67,18 +67,75 @@ std::array<double, 2> SetAreasHere(const SheetLayout& layout, const double* x, c
   return {right, left};
 }
 
+#if HWY_TARGET <= HWY_AVX2
+// An area and the field's mean on it are one vector.
+HWY_INLINE void GatherAround(const std::int32_t* first, const std::int32_t* end, const double* areas, double* sum,
+                             double* weighted) {
+  const hn::FixedTag<double, 4> four;
+  auto sums = hn::Zero(four), products = sums;
+  for (; first < end; first += kRingPlaces) {
+#pragma GCC unroll 8
+    for (int t = 0; t < kRingPlaces; ++t) {
+      const double* const at = areas + first[t];
+      const auto area = hn::LoadU(four, at);
+      sums = hn::Add(sums, area);
+      products = hn::Add(products, hn::Mul(hn::Set(four, at[3]), area));
+    }
+  }
+  hn::StoreU(sums, four, sum);
+  hn::StoreU(products, four, weighted);
+}
+#else
+HWY_INLINE void GatherAround(const std::int32_t* first, const std::int32_t* end, const double* areas, double* sum,
+                             double* weighted) {
+  for (; first < end; ++first) {
+    const double* const area = areas + *first;
+    for (int k = 0; k < 3; ++k) sum[k] += area[k], weighted[k] += area[3] * area[k];
+  }
+}
+#endif
+
 void GatherHere(const SheetLayout& layout, const double* areas, const double* x, const LinearField& field,
                 double* slopes, double* push) {
   const std::size_t vertices = layout.first.size() - 1;
   for (std::size_t i = 0; i < vertices; ++i, x += 3, slopes += 3, push += 3) {
-    double sum[3] = {}, weighted[3] = {};
-    for (std::int32_t t = layout.first[i]; t < layout.first[i + 1]; ++t) {
-      const double* const area = areas + layout.around[t];
-      for (int k = 0; k < 3; ++k) sum[k] += area[k], weighted[k] += area[3] * area[k];
-    }
+    double sum[4] = {}, weighted[4] = {};
+    GatherAround(&layout.around[layout.first[i]], layout.around.data() + layout.first[i + 1], areas, sum, weighted);
     const double here = field.slope[0] * x[0] + field.slope[1] * x[1] + field.slope[2] * x[2] - field.offset;
     for (int k = 0; k < 3; ++k) slopes[k] = sum[k], push[k] = (here * sum[k] + 3 * weighted[k]) / 4;
   }
+}
+
+constexpr std::size_t kSumLanes = 8;  // sums that stay apart, so that the order of additions is one
+
+std::array<double, 2> SumBySideHere(const std::vector<double>& on_left, const double* a, const double* b) {
+  const Tag d;
+  double all[kSumLanes] = {}, left[kSumLanes] = {};
+  const std::size_t whole = on_left.size() / kSumLanes * kSumLanes;
+  for (std::size_t i = 0; i < whole; i += points::kLanes) {
+    double *const to = all + i % kSumLanes, *const to_left = left + i % kSumLanes;
+    const Vector product = hn::Mul(hn::LoadU(d, a + i), hn::LoadU(d, b + i));
+    hn::StoreU(hn::Add(hn::LoadU(d, to), product), d, to);
+    hn::StoreU(hn::Add(hn::LoadU(d, to_left), hn::Mul(product, hn::LoadU(d, &on_left[i]))), d, to_left);
+  }
+  for (std::size_t i = whole; i < on_left.size(); ++i) {
+    all[i - whole] += a[i] * b[i];
+    left[i - whole] += a[i] * b[i] * on_left[i];
+  }
+  double sum = 0, sum_left = 0;
+  for (std::size_t lane = 0; lane < kSumLanes; ++lane) sum += all[lane], sum_left += left[lane];
+  return {sum - sum_left, sum_left};
+}
+
+void AddBySideHere(const std::vector<double>& on_left, double right, double left, const double* values, double* to) {
+  const Tag d;
+  const std::size_t whole = on_left.size() / points::kLanes * points::kLanes;
+  const Vector on_right = hn::Set(d, right), more = hn::Set(d, left - right);
+  for (std::size_t i = 0; i < whole; i += points::kLanes) {
+    const Vector factor = hn::Add(on_right, hn::Mul(more, hn::LoadU(d, &on_left[i])));
+    hn::StoreU(hn::Add(hn::LoadU(d, to + i), hn::Mul(factor, hn::LoadU(d, values + i))), d, to + i);
+  }
+  for (std::size_t i = whole; i < on_left.size(); ++i) to[i] += (right + (left - right) * on_left[i]) * values[i];
 }
 
 }  // namespace
@@ -90,6 +147,8 @@ namespace phrenic {
 
 HWY_EXPORT(SetAreasHere);
 HWY_EXPORT(GatherHere);
+HWY_EXPORT(SumBySideHere);
+HWY_EXPORT(AddBySideHere);
 
 std::array<double, 2> SetAreas(const SheetLayout& layout, const double* x, const double* apex, const LinearField& field,
                                double* areas) {
@@ -99,6 +158,14 @@ std::array<double, 2> SetAreas(const SheetLayout& layout, const double* x, const
 void GatherAreas(const SheetLayout& layout, const double* areas, const double* x, const LinearField& field,
                  double* slopes, double* push) {
   HWY_DYNAMIC_DISPATCH(GatherHere)(layout, areas, x + 3 * layout.first_vertex, field, slopes, push);
+}
+
+std::array<double, 2> SumBySide(const std::vector<double>& on_left, const double* a, const double* b) {
+  return HWY_DYNAMIC_DISPATCH(SumBySideHere)(on_left, a, b);
+}
+
+void AddBySide(const std::vector<double>& on_left, double right, double left, const double* values, double* to) {
+  HWY_DYNAMIC_DISPATCH(AddBySideHere)(on_left, right, left, values, to);
 }
 
 }  // namespace phrenic

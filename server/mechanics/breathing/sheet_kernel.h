@@ -11,13 +11,19 @@
 
 namespace phrenic {
 
+// A vertex has a multiple of so many places for the triangles around it: loops of one length are the fastest.
+inline constexpr int kRingPlaces = 8;
+
 // Triangles right of the midline and left of it, and the triangles around each vertex.
 struct SheetLayout {
   std::array<std::vector<TrianglePacket>, 2> packets;  // right, left
   std::vector<std::int32_t> first;                     // of each vertex in `around`, and the end
-  std::vector<std::int32_t> around;  // offsets in the array of areas [doubles]: four times the triangle's place
-  int first_vertex = 0;              // simulated
+  // Offsets in the array of areas [doubles]: four times the triangle's place, or that of the four zeros after all
+  // triangles.
+  std::vector<std::int32_t> around;
+  int first_vertex = 0;  // simulated
 
+  std::ptrdiff_t vertices() const { return static_cast<std::ptrdiff_t>(first.size()) - 1; }
   std::size_t triangles() const { return kPacketTriangles * (packets[0].size() + packets[1].size()); }
 };
 
@@ -33,10 +39,16 @@ struct LinearField {
 std::array<double, 2> SetAreas(const SheetLayout& layout, const double* x, const double* apex, const LinearField& field,
                                double* areas);
 
-// Sets `slopes`, 3 x the sheet's vertices, to the sum s_i of the areas around each vertex [m^2], and `push`, the same,
-// to the forces of a pressure p(x) [Pa]: (s_i p(x_i) + 3 sum of area times mean p)/4 [N].
+// Requires: four zeros follow the areas of the triangles. Sets `slopes`, 3 x the sheet's vertices, to the sum s_i of
+// the areas around each vertex [m^2], and `push`, the same, to the forces of a pressure p(x) [Pa]: (s_i p(x_i) + 3 sum
+// of area times mean p)/4 [N].
 void GatherAreas(const SheetLayout& layout, const double* areas, const double* x, const LinearField& field,
                  double* slopes, double* push);
+
+// Sums of the products of two arrays: {where `on_left` is 0, where it is 1}. All have the same size.
+std::array<double, 2> SumBySide(const std::vector<double>& on_left, const double* a, const double* b);
+// Adds to `to`: values times `right` where `on_left` is 0, times `left` where it is 1.
+void AddBySide(const std::vector<double>& on_left, double right, double left, const double* values, double* to);
 
 }  // namespace phrenic
 

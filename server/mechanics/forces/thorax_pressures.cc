@@ -97,8 +97,10 @@ void ThoraxPressures::AddVertices(const std::vector<std::array<std::vector<std::
   for (size_t i = 0; i < around.size(); ++i) {
     sheet_.first.push_back(static_cast<std::int32_t>(sheet_.around.size()));
     for (const auto& places : around[i]) sheet_.around.insert(sheet_.around.end(), places.begin(), places.end());
+    const auto nothing = static_cast<std::int32_t>(4 * sheet_.triangles());
+    while (sheet_.around.size() % kRingPlaces != 0) sheet_.around.push_back(nothing);
     const auto& [right, left] = around[i];
-    sides_.push_back(right.empty() ? kLeft : kRight);
+    on_left_.insert(on_left_.end(), 3, right.empty() ? 1 : 0);
     if (!right.empty() && !left.empty()) midline_.push_back({static_cast<int>(i), left});
   }
   sheet_.first.push_back(static_cast<std::int32_t>(sheet_.around.size()));
@@ -129,7 +131,7 @@ LinearField ThoraxPressures::Weight(const v1::Parameters& parameters) const {
 
 const ThoraxPressures::Slopes& ThoraxPressures::SlopesAt(const EvalContext& at) const {
   Slopes& slopes = at.scratch.Get<Slopes>();
-  const auto x = at.x.middleCols(sheet_.first_vertex, static_cast<Eigen::Index>(sides_.size()));
+  const auto x = at.x.middleCols(sheet_.first_vertex, sheet_.vertices());
   const LinearField weight = Weight(at.parameters);
   const bool same = slopes.of == this && slopes.x.cols() == x.cols() && slopes.weight == weight &&
                     std::memcmp(slopes.x.data(), x.data(), sizeof(double) * static_cast<size_t>(x.size())) == 0;
@@ -142,8 +144,9 @@ const ThoraxPressures::Slopes& ThoraxPressures::SlopesAt(const EvalContext& at) 
 }
 
 void ThoraxPressures::SetSlopes(const ConstPoints& x, const LinearField& weight, Slopes& slopes) const {
-  slopes.areas.resize(4 * sheet_.triangles());
-  slopes.sum.resize(3, static_cast<Eigen::Index>(sides_.size()));
+  slopes.areas.resize(static_cast<Eigen::Index>(4 * sheet_.triangles() + 4));
+  slopes.areas.tail<4>().setZero();
+  slopes.sum.resize(3, sheet_.vertices());
   slopes.push.resize(3, slopes.sum.cols());
   slopes.left.resize(3, static_cast<Eigen::Index>(midline_.size()));
   slopes.cones = SetAreas(sheet_, x.data(), wall_->apex.data(), weight, slopes.areas.data());
@@ -175,11 +178,7 @@ void ThoraxPressures::AddConeFaces(const ConstPoints& x, const LinearField& weig
 }
 
 std::array<double, 2> ThoraxPressures::Swept(const ConstPoints& v, const Slopes& slopes) const {
-  std::array<double, 2> swept = {};
-  const double *rate = v.col(sheet_.first_vertex).data(), *slope = slopes.sum.data();
-  for (size_t i = 0; i < sides_.size(); ++i, rate += 3, slope += 3) {
-    swept[sides_[i]] += rate[0] * slope[0] + rate[1] * slope[1] + rate[2] * slope[2];
-  }
+  std::array<double, 2> swept = SumBySide(on_left_, v.col(sheet_.first_vertex).data(), slopes.sum.data());
   for (size_t m = 0; m < midline_.size(); ++m) {
     const double left =
         slopes.left.col(static_cast<Eigen::Index>(m)).dot(v.col(sheet_.first_vertex + midline_[m].vertex));
@@ -189,13 +188,7 @@ std::array<double, 2> ThoraxPressures::Swept(const ConstPoints& v, const Slopes&
 }
 
 void ThoraxPressures::AddSlopes(double right, double left, const Slopes& slopes, MutablePoints g) const {
-  const double factors[2] = {right, left};
-  const double* slope = slopes.sum.data();
-  double* to = g.col(sheet_.first_vertex).data();
-  for (size_t i = 0; i < sides_.size(); ++i, slope += 3, to += 3) {
-    const double factor = factors[sides_[i]];
-    to[0] += factor * slope[0], to[1] += factor * slope[1], to[2] += factor * slope[2];
-  }
+  AddBySide(on_left_, right, left, slopes.sum.data(), g.col(sheet_.first_vertex).data());
   for (size_t m = 0; m < midline_.size(); ++m) {
     g.col(sheet_.first_vertex + midline_[m].vertex) += (left - right) * slopes.left.col(static_cast<Eigen::Index>(m));
   }
@@ -355,30 +348,24 @@ void ThoraxPressures::AddStiffness(const EvalContext& at, StiffnessSink& sink) c
 
 // The resistances of both lungs, sum of 2 o_h R_p,h v_h'^2 plus R_c (sum of o_h v_h')^2, as two squares.
 void ThoraxPressures::AddSharedDamping(const EvalContext& at, OuterProducts& shared) const {
-  struct Gradient {
-    Points g;
-  };
   const Slopes& slopes = SlopesAt(at);
   const Sides now = SidesAt(at, slopes);
-  Points& g = at.scratch.Get<Gradient>().g;
-  g.resize(3, at.x.cols());
+  const auto add = [&](double scale) -> Points& {
+    Points& g = shared.AddTerm(scale);
+    g.resize(3, at.x.cols());
+    return g;
+  };
   const auto own = [&](size_t h) {
     return 2 * now.open[h] * now.peripheral[h] + now.common * now.open[h] * now.open[h];
   };
   const double right = own(kRight), both = now.common * now.open[kRight] * now.open[kLeft];
-  if (right > 0) {
-    SetVolumeSlopes(1, both / right, slopes, now.cage, g);
-    shared.Add(right, g);
-  }
+  if (right > 0) SetVolumeSlopes(1, both / right, slopes, now.cage, add(right));
   const double left = own(kLeft) - (right > 0 ? both * both / right : 0);
-  if (left > 0) {
-    SetVolumeSlopes(0, 1, slopes, now.cage, g);
-    shared.Add(left, g);
-  }
+  if (left > 0) SetVolumeSlopes(0, 1, slopes, now.cage, add(left));
   if (scene_.abdomen().resistance() <= 0) return;
+  Points& g = add(scene_.abdomen().resistance());
   g.setZero();
   AddSlopes(1, 1, slopes, g);
-  shared.Add(scene_.abdomen().resistance(), g);
 }
 
 double ThoraxPressures::EnergyOfGas(const EvalContext& at, const Sides& now) const {

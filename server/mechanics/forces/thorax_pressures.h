@@ -69,10 +69,10 @@ class ThoraxPressures final : public Force {
   };
   // The derivatives of the cones by the sheet's vertices [m^2]: a vertex is of one side, or of both on the midline.
   struct Slopes {
-    Points sum;   // dS/dx, 3 x the sheet's vertices
-    Points left;  // dS_left/dx of the midline's vertices
-    Points push;  // force of the weight [N], 3 x the sheet's vertices
-    std::vector<double> areas;
+    Points sum;                        // dS/dx, 3 x the sheet's vertices
+    Points left;                       // dS_left/dx of the midline's vertices
+    Points push;                       // force of the weight [N], 3 x the sheet's vertices
+    Eigen::VectorXd areas;             // of SetAreas
     std::array<double, 2> cones = {};  // S_h [m^3]
     // What they were made of: they are made again if that changes.
     const ThoraxPressures* of = nullptr;
@@ -132,7 +132,8 @@ class ThoraxPressures final : public Force {
   int expiration_ = 0;    // in State::scalars: activation of the expiratory muscles
   int first_scalar_ = 0;  // in State::scalars: 1 if the airway is closed, and the volume change at which it closed
   SheetLayout sheet_;
-  std::vector<std::uint8_t> sides_;  // of each vertex of the sheet; kRight on the midline
+  // Of each coordinate of the sheet: 1 if its vertex is left of the midline, 0 if right or on it.
+  std::vector<double> on_left_;
   std::vector<MidlineVertex> midline_;
   std::array<double, 2> rest_cones_ = {};             // S_h0 [m^3]
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  // where the weight's pressure is 0 [m]

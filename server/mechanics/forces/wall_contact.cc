@@ -50,6 +50,21 @@ void WallContact::PlaceAtRest(const Model& model) {
     slider.rest_gradient = gap.gradient.norm();
     slider.touching = std::max(0.0, gap.gap);
   }
+  Pack();
+}
+
+void WallContact::Pack() {
+  constexpr size_t kLanes = 8;
+  packets_.assign((sliders_.size() + kLanes - 1) / kLanes, {});
+  for (size_t i = 0; i < packets_.size() * kLanes; ++i) {
+    SliderPacket& packet = packets_[i / kLanes];
+    const size_t lane = i % kLanes;
+    const Slider& slider = sliders_[i < sliders_.size() ? i : i - lane];
+    packet.place[lane] = 3 * slider.vertex;
+    packet.stiffness[lane] = stiffness_ * slider.area;
+    packet.touching[lane] = slider.touching;
+    if (i < sliders_.size()) ++packet.count;
+  }
 }
 
 void WallContact::RestOnSurface(const Eigen::VectorXd& pushes) {
@@ -60,6 +75,7 @@ void WallContact::RestOnSurface(const Eigen::VectorXd& pushes) {
     slider.touching = slider.rest_gap - depth;
     margin_ = std::max(margin_, -slider.touching);
   }
+  Pack();
 }
 
 const WallTable& WallContact::TableAt(const EvalContext& at) const {
@@ -78,16 +94,10 @@ void WallContact::ForEachNear(const EvalContext& at, const Visit& visit) const {
 }
 
 void WallContact::AddForce(const EvalContext& at, MutablePoints f) const {
-  double pump = 0, bucket = 0;
-  ForEachNear(at, [&](const Slider& slider, const WallGap& gap) {
-    if (gap.gap <= slider.touching) return;
-    const double push = stiffness_ * slider.area * std::min(gap.gap - slider.touching, largest_depth_);
-    f.col(slider.vertex) -= push * gap.gradient;
-    pump -= push * gap.by_pump;
-    bucket -= push * gap.by_bucket;
-  });
-  wall_->pump.AddForce(pump, f);
-  wall_->bucket.AddForce(bucket, f);
+  const WallReaction push =
+      PushFromWall(packets_, wall_->wall.frame(), TableAt(at), margin_, largest_depth_, at.x.data(), f.data());
+  wall_->pump.AddForce(push.pump, f);
+  wall_->bucket.AddForce(push.bucket, f);
 }
 
 // Without the coupling to the cage, which is far softer.

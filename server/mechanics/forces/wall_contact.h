@@ -44,6 +44,7 @@ class WallContact final : public Force {
         largest_depth_(scene.largest_depth()),
         wall_(std::move(wall)) {}
   void PlaceAtRest(const Model& model);
+  void Pack();
   const WallTable& TableAt(const EvalContext& at) const;
   // Calls visit(slider, gap) for those that may touch the wall.
   template <typename Visit>
@@ -55,7 +56,8 @@ class WallContact final : public Force {
   const double stiffness_, largest_depth_;  // [Pa/m], [m]
   const std::shared_ptr<const CageWall> wall_;
   std::vector<Slider> sliders_;
-  double margin_ = 3e-3;  // a vertex that is farther inside touches nothing [m]
+  std::vector<SliderPacket> packets_;  // the same for the kernel
+  double margin_ = 3e-3;               // a vertex that is farther inside touches nothing [m]
 };
 
 }  // namespace phrenic

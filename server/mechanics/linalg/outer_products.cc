@@ -1,14 +1,18 @@
 #include "server/mechanics/linalg/outer_products.h"
 
 #include <Eigen/Cholesky>
+#include <utility>
 
 namespace phrenic {
+
 void OuterProducts::Add(double scale, const Points& g) {
-  if (scale == 0) return;
+  if (scale != 0) AddTerm(scale) = g;
+}
+
+Points& OuterProducts::AddTerm(double scale) {
   if (used_ == terms_.size()) terms_.emplace_back();
   terms_[used_].scale = scale;
-  terms_[used_].g = g;
-  ++used_;
+  return terms_[used_++].g;
 }
 
 void OuterProducts::AddTimes(double factor, const ConstPoints& x, MutablePoints y) const {
@@ -36,24 +40,19 @@ void OuterProducts::Correct(double factor, absl::FunctionRef<void(const Points&,
   CorrectPrepared(factor, y);
 }
 
-// (B + G D G^T)^-1 b = y - W G (D^-1 + G^T W G)^-1 G^T y with D = factor times the scales and W = B^-1.
-void OuterProducts::CorrectDiagonal(double factor, const Eigen::VectorXd& weights, Points& y) {
+// (B + G D G^T)^-1 B gain = gain - W G (D^-1 + G^T W G)^-1 G^T gain with D = dt times the scales and W = B^-1.
+void OuterProducts::CorrectStep(double dt, const Eigen::VectorXd& weights, const Points& start, Points& v, Points& x) {
   const auto terms = static_cast<Eigen::Index>(used_);
+  weighted_ = {.g = std::move(weighted_.g), .weights = weights.data(), .columns = static_cast<size_t>(v.cols())};
+  weighted_.g.clear();
+  for (size_t k = 0; k < used_; ++k) weighted_.g.push_back(terms_[k].g.data());
   gram_.resize(terms, terms);
   along_.resize(terms);
-  for (Eigen::Index a = 0; a < terms; ++a) {
-    const Points& g = terms_[static_cast<size_t>(a)].g;
-    along_[a] = Dot(g, y);
-    for (Eigen::Index b = 0; b <= a; ++b) {
-      const Points& other = terms_[static_cast<size_t>(b)].g;
-      gram_(a, b) = gram_(b, a) = g.cwiseProduct(other).colwise().sum().dot(weights);
-    }
-    gram_(a, a) += 1 / (factor * terms_[static_cast<size_t>(a)].scale);
-  }
-  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(gram_).solveInPlace(along_);
-  for (Eigen::Index a = 0; a < terms; ++a) {
-    y.noalias() -= terms_[static_cast<size_t>(a)].g * (along_[a] * weights).asDiagonal();
-  }
+  // The lower triangle row by row is the upper one of Eigen's columns.
+  SumProducts(weighted_, start.data(), v.data(), lanes_, along_.data(), gram_.data());
+  for (Eigen::Index k = 0; k < terms; ++k) gram_(k, k) += 1 / (dt * terms_[static_cast<size_t>(k)].scale);
+  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Upper>(gram_).solveInPlace(along_);
+  TakeOffTerms(weighted_, along_.data(), dt, v.data(), x.data());
 }
 
 double OuterProducts::Bound(const Eigen::VectorXd& weights) const {

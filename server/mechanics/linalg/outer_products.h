@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "absl/functional/function_ref.h"
+#include "server/mechanics/linalg/outer_products_kernel.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic {
@@ -18,6 +19,8 @@ class OuterProducts {
   void Clear() { used_ = 0; }
   // Adds a term, unless scale is 0. Requires: scale >= 0.
   void Add(double scale, const Points& g);
+  // Adds a term and returns its g, which the caller sets, whatever size and values it has. Requires: scale > 0.
+  Points& AddTerm(double scale);
   bool empty() const { return used_ == 0; }
   // Calls change(g) for each term, which may change g.
   template <typename F>
@@ -35,9 +38,10 @@ class OuterProducts {
   // Replaces y = B^-1 b by (B + factor S)^-1 b (Sherman and Morrison 1950, term after term). `inverse` sets its second
   // argument to B^-1 times its first.
   void Correct(double factor, absl::FunctionRef<void(const Points&, Points&)> inverse, Points& y);
-  // The same for B diagonal, with 1/B the `weights` of the columns and `factor` > 0, all terms at once (Woodbury 1950):
-  // fewer passes over memory.
-  void CorrectDiagonal(double factor, const Eigen::VectorXd& weights, Points& y);
+  // Corrects the end of a step of `dt` [s] that was taken without S from the velocities `start` [m/s]: the gain of `v`
+  // becomes (1/W + dt S)^-1 1/W times itself, W the diagonal matrix of `weights` (Woodbury 1950), and x follows it by
+  // `dt`.
+  void CorrectStep(double dt, const Eigen::VectorXd& weights, const Points& start, Points& v, Points& x);
   // The two halves of Correct, for several right-hand sides: what depends on B alone, and the rest.
   void Prepare(double factor, absl::FunctionRef<void(const Points&, Points&)> inverse);
   void CorrectPrepared(double factor, Points& y) const;
@@ -53,7 +57,10 @@ class OuterProducts {
 
   std::vector<Term> terms_;
   size_t used_ = 0;
-  Eigen::MatrixXd gram_;  // of CorrectDiagonal
+  // Of CorrectStep.
+  WeightedTerms weighted_;
+  std::vector<double> lanes_;
+  Eigen::MatrixXd gram_;
   Eigen::VectorXd along_;
 };
 

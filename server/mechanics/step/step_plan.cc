@@ -200,12 +200,7 @@ BlockForces StepPlan::SumForces(const VertexRange& block, const BlockContext& at
 
 void StepPlan::ApplySharedDamping(double dt, const State& start, const StepEnd& end, Workspace& work) const {
   if (!shares_damping_ || work.shared_damping.empty()) return;
-  Points& gain = work.Stage(0);
-  gain = end.v - start.v;
-  work.shared_damping.CorrectDiagonal(dt, model_.inverse_mass, gain);
-  end.v = start.v + gain;
-  end.x = start.x;
-  AddToFree(dt, end.v, end.x);
+  work.shared_damping.CorrectStep(dt, model_.inverse_mass, start.v, end.v, end.x);
 }
 
 void StepPlan::TakeEnd(const StepEnd& end, State& state, Workspace& work) const {

@@ -170,6 +170,30 @@ TEST(OuterProducts, CorrectAnInverse) {
   EXPECT_LT((whole * y.reshaped() - b.reshaped()).norm(), 1e-12);
 }
 
+// By the matrix itself; more columns than a packet of the kernel, and some over.
+TEST(OuterProducts, CorrectAStep) {
+  constexpr int kColumns = 21;
+  constexpr double kStep = 0.3;
+  OuterProducts products;
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(3 * kColumns, 3 * kColumns);
+  for (int term = 0; term < 3; ++term) {
+    const Points g = RandomPoints(kColumns, term);
+    products.Add(term + 1, g);
+    matrix += kStep * (term + 1) * g.reshaped() * g.reshaped().transpose();
+  }
+  Eigen::VectorXd weights = RandomPoints(kColumns, 7).row(0).cwiseAbs().array() + 0.1;
+  weights[4] = 0;  // does not move
+  const Points start = RandomPoints(kColumns, 8), gain = RandomPoints(kColumns, 9) * weights.asDiagonal();
+  Points v = start + gain, x = kStep * v;
+  products.CorrectStep(kStep, weights, start, v, x);
+  EXPECT_EQ(v.col(4), start.col(4));
+  EXPECT_LT((x - kStep * v).norm(), 1e-12);
+  // (1/W + dt S) corrected = 1/W gain, times W.
+  const Points corrected = v - start;
+  Points damped = (matrix * corrected.reshaped()).reshaped(3, kColumns) * weights.asDiagonal();
+  EXPECT_LT((corrected + damped - gain).norm(), 1e-12);
+}
+
 // A tolerance that no iteration meets brings the factorisation on.
 TEST(ImplicitSystemWithLungs, FactorisesToWhatIterationsFind) {
   const auto model =
