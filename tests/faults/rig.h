@@ -42,6 +42,8 @@ class Rig {
   double Wait(double max) { return std::uniform_real_distribution<double>(0, max)(random_); }
 
  private:
+  bool StepsAgain();
+
   std::mt19937 random_{3};
   const std::string store_;
   std::unique_ptr<ServerProcess> server_;

@@ -45,7 +45,7 @@ describe("the page of a study", () => {
     const header = page.querySelector("header")!.textContent!;
     expect(page.querySelector("h1")!.textContent).toBe("Error against run time: thorax");
     expect(header).toContain("3d6792551747970ab59dde977832208208ed8ef8525ebe03783601e643b0e8d9");
-    expect(header).toContain("breath force 1 · breath length 4 s");
+    expect(header).toContain("breath length 4 s · apply muscles on");
     expect(header).toContain("integrator Semi-implicit Euler");
     expect(header).toContain("2 s simulated");
     expect(document.title).toBe("Error against run time: thorax – Phrenic");
