@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kBesideMidline = 0.035, kBehind = 0.04;  // [m]
 constexpr double kUpwards = 0.3;                          // least z of a unit normal; the steep rim has less
-constexpr int kSections = 6, kReach = 9;                  // points on each side of the apex
+constexpr int kSections = 6, kSectionReach = 9;           // points on each side of the apex
 constexpr double kSpacing = 0.005;                        // [m]
 
 Eigen::Vector3d AreaVector(const ConstPoints& x, const Eigen::Vector3i& t) {
@@ -106,7 +106,7 @@ double Columns::Hollow(const ConstPoints& sheet, v1::Side side) const {
   for (int section = 0; section < kSections; ++section) {
     const double turn = std::numbers::pi * section / kSections;
     std::vector<double> heights;
-    for (int i = -kReach; i <= kReach; ++i) {
+    for (int i = -kSectionReach; i <= kSectionReach; ++i) {
       const Eigen::Vector2d at = apex + kSpacing * i * Eigen::Vector2d(std::cos(turn), std::sin(turn));
       const double z = TopOfColumn(sheet, rest_.triangles, at.x(), at.y());
       if (std::isfinite(z)) heights.push_back(z);

@@ -15,7 +15,7 @@ constexpr ChangedBreath kBreaths[] = {
     {"deep, ascites", "deep", "abdominal_load: 1000 abdominal_compliance: 0.4"},
 };
 
-constexpr Row kRows[] = {
+constexpr Row kChangedRows[] = {
     {"sniff, right palsy", "right dome, rise", "mm", 2, 15, &RightRise, Needs::kSheet, kRange},
     {"sniff, right palsy", "transdiaphragmatic pressure of health's", "%", 25, 45, &PdiShare, kAir, kThird, "sniff"},
     {"palsy-both", "both domes, rise at the end of inspiration", "mm", 0.5, 60, &BothRise, Needs::kSheet, kSign},
@@ -48,6 +48,6 @@ constexpr Row kRows[] = {
 }  // namespace
 
 std::span<const ChangedBreath> ChangedBreaths() { return kBreaths; }
-std::span<const Row> RowsOfChanges() { return kRows; }
+std::span<const Row> RowsOfChanges() { return kChangedRows; }
 
 }  // namespace phrenic::physiology

@@ -5,10 +5,10 @@ namespace {
 
 constexpr const char *kBoussuges = "Boussuges 2009", *kGauthier = "Gauthier 1994", *kWilson = "from Wilson 1987",
                      *kKonno = "Konno and Mead", *kKnown = "general knowledge",
-                     *kVolume = "20-36 % shortening at constant volume", *kLaw = "conservation of volume",
+                     *kConstantVolume = "20-36 % shortening at constant volume", *kLaw = "conservation of volume",
                      *kScans = "ten CTs", *kTendon = "tendon is not stretched by physiological stress";
 
-constexpr Row kRows[] = {
+constexpr Row kHealthRows[] = {
     {"quiet", "right dome, descent at the apex", "mm", 10, 25, &RightApex, Needs::kSheet, kBoussuges},
     {"quiet", "right dome, descent 40 mm behind", "mm", 10, 25, &RightBack, Needs::kSheet, kBoussuges},
     {"quiet", "left dome, descent at the apex", "mm", 0, 0, &LeftApex, Needs::kSheet, ""},
@@ -24,7 +24,7 @@ constexpr Row kRows[] = {
     {"quiet", "strain across fibres, half the muscle", "%", 0, 2, &AcrossMedian, Needs::kFibres, kGauthier},
     {"quiet", "strain across fibres, 95 % of the muscle", "%", 0, 5, &AcrossNearlyAll, Needs::kFibres, kGauthier},
     {"quiet", "tendon area change", "%", 0, 2, &TendonArea, Needs::kFibres, kTendon},
-    {"quiet", "thickness at the wall over that at rest", "1", 1.05, 1.25, &Thickening, Needs::kWall, kVolume},
+    {"quiet", "thickness at the wall over that at rest", "1", 1.05, 1.25, &Thickening, Needs::kWall, kConstantVolume},
     {"quiet", "sternum forward", "mm", 1.5, 5, &SternumVentral, Needs::kBones, kWilson},
     {"quiet", "sternum upward", "mm", 2, 9, &SternumCranial, Needs::kBones, kWilson},
     {"quiet", "ribs 7-10 outward", "mm", 1.5, 5, &RibsOutward, Needs::kBones, kWilson},
@@ -45,7 +45,7 @@ constexpr Row kRows[] = {
     {"deep", "shortening, coronal section", "%", 20, 36, &CoronalShortening, Needs::kFibres, kGauthier},
     {"deep", "shortening, sagittal section", "%", 20, 36, &SagittalShortening, Needs::kFibres, kGauthier},
     {"deep", "tendon area change", "%", 0, 3, &TendonArea, Needs::kFibres, kTendon},
-    {"deep", "thickness at the wall over that at rest", "1", 1.3, 1.9, &Thickening, Needs::kWall, kVolume},
+    {"deep", "thickness at the wall over that at rest", "1", 1.3, 1.9, &Thickening, Needs::kWall, kConstantVolume},
     {"deep", "sternum forward", "mm", 8, 20, &SternumVentral, Needs::kBones, kWilson},
     {"deep", "sternum upward", "mm", 15, 45, &SternumCranial, Needs::kBones, kWilson},
     {"deep", "ribs 7-10 outward", "mm", 9, 20, &RibsOutward, Needs::kBones, kWilson},
@@ -68,7 +68,7 @@ constexpr FlawRow kFlawRows[] = {
 
 }  // namespace
 
-std::span<const Row> RowsOfHealth() { return kRows; }
+std::span<const Row> RowsOfHealth() { return kHealthRows; }
 std::span<const FlawRow> FlawRows() { return kFlawRows; }
 
 }  // namespace phrenic::physiology

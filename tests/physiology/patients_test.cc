@@ -1,5 +1,5 @@
-// Three phantom patients (small, tall, flattened domes) breathe inside the published ranges when their models are made
-// from noisy label volumes.
+// Three phantom patients (small, tall, flattened domes) breathe inside the published ranges, or the README lists the
+// measure, when their models are made from noisy label volumes.
 #include <gtest/gtest.h>
 
 #include <cstdio>
