@@ -65,8 +65,12 @@ std::string List(const char* heading, std::span<const NamedText> rows) {
 }
 
 std::string Parameters() {
-  std::string text;
-  for (const ParameterRow& row : ParameterRows()) text += Pair(row.name, MeaningOf(row));
+  std::string text, group;
+  for (const ParameterRow& row : ParameterRows()) {
+    if (row.group != group) text += Heading(row.group);
+    group = row.group;
+    text += Pair(row.name, MeaningOf(row));
+  }
   return text;
 }
 

@@ -45,8 +45,12 @@ std::string ArgumentItems(const CLI::App& command) {
 }
 
 std::string ParameterItems() {
-  std::string text;
-  for (const ParameterRow& row : ParameterRows()) text += Item(row.name, MeaningOf(row));
+  std::string text, group;
+  for (const ParameterRow& row : ParameterRows()) {
+    if (row.group != group) absl::StrAppend(&text, ".SS \"", RoffEscaped(row.group), "\"\n");
+    group = row.group;
+    text += Item(row.name, MeaningOf(row));
+  }
   return text;
 }
 

@@ -14,18 +14,26 @@ using google::protobuf::FieldDescriptor;
 
 ParameterRow RowOf(const FieldDescriptor& field) {
   if (const v1::Toggle* toggle = schema::ToggleOf(field)) {
-    return {field.name(), "", "on, off", toggle->default_value() ? "on" : "off", toggle->help()};
+    return {schema::GroupOf(field), field.name(), "", "on, off", toggle->default_value() ? "on" : "off",
+            toggle->help()};
   }
   if (const v1::Choice* choice = schema::ChoiceOf(field)) {
     const google::protobuf::EnumDescriptor& type = *field.enum_type();
     // The names are in the last column, because they are too long for the others.
-    return {field.name(), "", "a name", schema::ChoiceName(*type.FindValueByNumber(choice->default_value())),
+    return {schema::GroupOf(field),
+            field.name(),
+            "",
+            "a name",
+            schema::ChoiceName(*type.FindValueByNumber(choice->default_value())),
             absl::StrCat(choice->help(), " One of ", schema::ChoiceNames(type), ".")};
   }
   const v1::Quantity& quantity = field.options().GetExtension(v1::quantity);
-  return {field.name(), quantity.unit() == "1" ? "" : quantity.unit(),
+  return {schema::GroupOf(field),
+          field.name(),
+          quantity.unit() == "1" ? "" : quantity.unit(),
           absl::StrFormat("%g to %g", quantity.minimum(), quantity.maximum()),
-          quantity.automatic() ? "automatic" : absl::StrFormat("%g", quantity.default_value()), quantity.help()};
+          quantity.automatic() ? "automatic" : absl::StrFormat("%g", quantity.default_value()),
+          quantity.help()};
 }
 
 }  // namespace

@@ -8,10 +8,10 @@
 namespace phrenic::client {
 
 struct ParameterRow {
-  std::string name, unit, range, default_value, meaning;  // the unit is empty for a pure number
+  std::string group, name, unit, range, default_value, meaning;  // the unit is empty for a pure number
 };
 
-// Returns one row per live parameter, in the schema's order.
+// Returns one row per live parameter, in the schema's order: those of a group stand together.
 std::vector<ParameterRow> ParameterRows();
 
 }  // namespace phrenic::client

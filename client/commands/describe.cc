@@ -1,5 +1,7 @@
 // `phrenic describe`: what the compiler made of a scene.
+#include <algorithm>
 #include <iostream>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -41,6 +43,56 @@ void PrintElements(const v1::CompileReport& report) {
   left_out.Print(std::cout);
 }
 
+// Returns the parameters of the preset that differ from the initial ones of the scene.
+v1::Parameters ChangesOf(const v1::Preset& preset, const v1::Parameters& initial) {
+  v1::Parameters changes = preset.parameters();
+  const google::protobuf::Descriptor& type = *v1::Parameters::descriptor();
+  for (int f = 0; f < type.field_count(); ++f) {
+    const google::protobuf::FieldDescriptor& field = *type.field(f);
+    const bool same = ParameterValue(changes, field) == ParameterValue(initial, field);
+    if (same) changes.GetReflection()->ClearField(&changes, &field);
+  }
+  return changes;
+}
+
+void PrintPreset(const v1::Preset& preset, const v1::Parameters& initial) {
+  const std::string title = preset.title().empty() ? "" : absl::StrCat(" (", preset.title(), ")");
+  const std::string changes = ParametersLine(ChangesOf(preset, initial));
+  std::cout << preset.name() << title << ": " << (changes.empty() ? "the initial parameters" : changes) << "\n";
+  if (!preset.description().empty()) std::cout << "  " << preset.description() << "\n";
+}
+
+// Prints the presets by group, in the order in which the scene names the groups first.
+void PrintPresets(const v1::DescribeSceneResponse& response) {
+  std::vector<std::string> groups;
+  for (const v1::Preset& preset : response.scene().presets()) {
+    if (std::ranges::find(groups, preset.group()) == groups.end()) groups.push_back(preset.group());
+  }
+  for (const std::string& group : groups) {
+    std::cout << "\nPresets" << (group.empty() ? "" : ": " + group) << "\n";
+    for (const v1::Preset& preset : response.scene().presets()) {
+      if (preset.group() == group) PrintPreset(preset, response.parameters());
+    }
+  }
+}
+
+// Prints the parameters that have an effect in the scene, by group, and the names of the others.
+void PrintParameters(const v1::DescribeSceneResponse& response) {
+  const auto& idle = response.report().idle_parameters();
+  std::cout << "\nParameters\n";
+  Table parameters({"group", "parameter", "initial", "unit", "range", "default", "meaning"});
+  std::string group;
+  for (const ParameterRow& row : ParameterRows()) {
+    if (std::ranges::find(idle, row.name) != idle.end()) continue;
+    const auto& field = *v1::Parameters::descriptor()->FindFieldByName(row.name);
+    parameters.Add({row.group == group ? "" : row.group, row.name, ParameterValue(response.parameters(), field),
+                    row.unit, row.range, row.default_value, row.meaning});
+    group = row.group;
+  }
+  parameters.Print(std::cout);
+  if (!idle.empty()) std::cout << "Without effect in this scene: " << absl::StrJoin(idle, ", ") << "\n";
+}
+
 void PrintReport(const v1::DescribeSceneResponse& response) {
   const v1::CompileReport& report = response.report();
   std::cout << response.scene().title() << " (" << response.scene().name() << ")\n"
@@ -53,20 +105,8 @@ void PrintReport(const v1::DescribeSceneResponse& response) {
       "Largest stable step %.4g s: %s\nInitial step %.4g s\nCompiled in %.2f s; scene hash %s\n",
       report.simulated_vertices(), report.springs(), report.rigid_links(), report.attachments(), step.seconds(),
       step.reason(), step.chosen_seconds(), report.compile_seconds(), report.scene_hash());
-  if (response.scene().presets_size() > 0) std::cout << "\nPresets\n";
-  for (const v1::Preset& preset : response.scene().presets()) {
-    std::cout << absl::StrFormat("%s (%s): %s\n", preset.name(), preset.title(), ParametersLine(preset.parameters()));
-    if (!preset.description().empty()) std::cout << "  " << preset.description() << "\n";
-  }
-  std::cout << "\nParameters\n" << ParametersLine(response.parameters()) << "\n";
-  if (report.idle_parameters_size() > 0) {
-    std::cout << "Without effect in this scene: " << absl::StrJoin(report.idle_parameters(), ", ") << "\n";
-  }
-  Table parameters({"parameter", "unit", "range", "default", "meaning"});
-  for (const ParameterRow& row : ParameterRows()) {
-    parameters.Add({row.name, row.unit, row.range, row.default_value, row.meaning});
-  }
-  parameters.Print(std::cout);
+  PrintPresets(response);
+  PrintParameters(response);
 }
 
 int Describe(const Context& context, const SceneOptions& options) {

@@ -3,11 +3,32 @@
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/util/time_util.h>
 
+#include <utility>
+#include <vector>
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/schema/fields.h"
 
 namespace phrenic::client {
+namespace {
+
+// Returns the set parameters of each group, as "breath_length=4 pause_share=0.2", in the schema's order.
+std::vector<std::pair<std::string, std::string>> SettingsByGroup(const v1::Parameters& parameters) {
+  std::vector<std::pair<std::string, std::string>> groups;
+  for (int f = 0; f < v1::Parameters::descriptor()->field_count(); ++f) {
+    const google::protobuf::FieldDescriptor& field = *v1::Parameters::descriptor()->field(f);
+    if (!parameters.GetReflection()->HasField(parameters, &field)) continue;
+    const std::string group = schema::GroupOf(field);
+    if (groups.empty() || groups.back().first != group) groups.emplace_back(group, "");
+    std::string& settings = groups.back().second;
+    absl::StrAppend(&settings, settings.empty() ? "" : " ", std::string(field.name()), "=",
+                    ParameterValue(parameters, field));
+  }
+  return groups;
+}
+
+}  // namespace
 
 std::string StateName(v1::SessionState state) {
   switch (state) {
@@ -36,13 +57,18 @@ std::string ParameterValue(const v1::Parameters& parameters, const google::proto
 
 std::string ParametersLine(const v1::Parameters& parameters) {
   std::string line;
-  for (int f = 0; f < v1::Parameters::descriptor()->field_count(); ++f) {
-    const google::protobuf::FieldDescriptor* field = v1::Parameters::descriptor()->field(f);
-    if (!parameters.GetReflection()->HasField(parameters, field)) continue;
-    absl::StrAppend(&line, line.empty() ? "" : " ", std::string(field->name()), "=",
-                    ParameterValue(parameters, *field));
+  for (const auto& [group, settings] : SettingsByGroup(parameters)) {
+    absl::StrAppend(&line, line.empty() ? "" : " ", settings);
   }
   return line;
+}
+
+std::string ParameterLines(const v1::Parameters& parameters, const char* before) {
+  std::string lines;
+  for (const auto& [group, settings] : SettingsByGroup(parameters)) {
+    absl::StrAppend(&lines, before, group, ": ", settings, "\n");
+  }
+  return lines;
 }
 
 std::string ResidualText(const v1::Session& session, const char* before, const char* after) {
@@ -92,7 +118,7 @@ void PrintSession(const v1::Session& session, std::ostream& out) {
                            session.pace().steps_per_second(), session.pace().times_real_time(),
                            session.pace().cpu_per_simulated_second());
   }
-  out << "  " << ParametersLine(session.parameters()) << "\n";
+  out << ParameterLines(session.parameters(), "  ");
   out << SolverText(session, "  solver: ", "\n");
   out << ResidualText(session, "  constraints kept within ", "\n");
   out << WarningLines(session.warnings(), "  ");

@@ -12,8 +12,14 @@ namespace phrenic::client {
 // Returns "paused", "playing", "diverged" or "unknown".
 std::string StateName(v1::SessionState state);
 
-// Returns the parameters that are set: "breath_force=1.5 breath_length=4 ...".
+// Returns the value of a parameter: "1.5", "on", "velocity_verlet".
+std::string ParameterValue(const v1::Parameters& parameters, const google::protobuf::FieldDescriptor& field);
+
+// Returns the parameters that are set: "breath_length=4 breath_force=1.5 ...".
 std::string ParametersLine(const v1::Parameters& parameters);
+
+// Returns a line for each group of parameters that has a set one: "BEFOREBreathing: breath_length=4 ...\n".
+std::string ParameterLines(const v1::Parameters& parameters, const char* before);
 
 // Returns the largest constraint residual, "1.2e-07 mm (rigid-links:cube)", between `before` and `after`; empty if the
 // session has no constraints.

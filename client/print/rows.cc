@@ -27,6 +27,8 @@ std::string Text(const Message& row, const FieldDescriptor& field, bool every_di
       return absl::StrCat(reflection.GetInt64(row, &field));
     case FieldDescriptor::CPPTYPE_BOOL:
       return reflection.GetBool(row, &field) ? "yes" : (every_digit ? "no" : "");
+    case FieldDescriptor::CPPTYPE_ENUM:
+      return reflection.GetEnum(row, &field)->name();
     default:
       return reflection.GetString(row, &field);
   }

@@ -53,6 +53,8 @@ const EnumValueDescriptor* FindChoice(const EnumDescriptor& type, std::string_vi
   return nullptr;
 }
 
+std::string GroupOf(const FieldDescriptor& field) { return field.options().GetExtension(v1::group); }
+
 bool IsRequired(const FieldDescriptor& field) { return field.options().GetExtension(v1::required); }
 
 std::string FormatNumber(double value) {

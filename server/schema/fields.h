@@ -17,6 +17,8 @@ namespace phrenic::schema {
 const v1::Quantity* QuantityOf(const google::protobuf::FieldDescriptor& field);
 const v1::Toggle* ToggleOf(const google::protobuf::FieldDescriptor& field);
 const v1::Choice* ChoiceOf(const google::protobuf::FieldDescriptor& field);
+// Returns the heading under which help and panels list the field; empty if it has none.
+std::string GroupOf(const google::protobuf::FieldDescriptor& field);
 // True if the field must be set, or must not be empty.
 bool IsRequired(const google::protobuf::FieldDescriptor& field);
 

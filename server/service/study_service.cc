@@ -116,7 +116,8 @@ grpc::Status StudyService::CheckPhysiology(grpc::CallbackServerContext* context,
   const auto model = models_.Get(request->source(), guard_.RequesterOf(*caller, *context));
   if (!model.ok()) return ToGrpc(model.status());
   v1::CheckPhysiologyResponse response;
-  const auto table = physiology::CheckPhysiology(**model, [&](double done) {
+  const std::vector<std::string> presets(request->presets().begin(), request->presets().end());
+  const auto table = physiology::CheckPhysiology(**model, presets, [&](double done) {
     response.set_progress(done);
     return writer->Write(response) && !context->IsCancelled();
   });

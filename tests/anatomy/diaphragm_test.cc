@@ -4,9 +4,9 @@
 
 #include "server/mesh/nearest.h"
 #include "server/mesh/normals.h"
+#include "server/mesh/self_crossings.h"
 #include "server/mesh/topology.h"
 #include "server/mesh/units.h"
-#include "tests/anatomy/crossings.h"
 #include "tests/anatomy/parts.h"
 
 namespace phrenic::anatomy {

@@ -4,10 +4,10 @@
 #include <set>
 
 #include "server/mesh/normals.h"
+#include "server/mesh/self_crossings.h"
 #include "server/mesh/topology.h"
 #include "server/mesh/triangle_tree.h"
 #include "server/mesh/units.h"
-#include "tests/anatomy/crossings.h"
 #include "tests/anatomy/parts.h"
 
 namespace phrenic::anatomy {

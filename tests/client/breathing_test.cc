@@ -33,11 +33,25 @@ TEST(Physiology, PrintsValueRangeAndVerdict) {
   const Outcome study = Phrenic({"physiology", "thorax", "--resolution", "20", "-o", "json"});
   ASSERT_EQ(study.code, 0) << study.err;
   const auto rows = study.json()["rows"];
-  ASSERT_GE(rows.size(), 19u);
+  ASSERT_GE(rows.size(), 40u);
   for (const auto& row : rows) {
+    if (row["verdict"] == "VERDICT_NOT_MODELLED") {
+      EXPECT_NE(row["note"], "") << row["what"];
+      continue;
+    }
+    if (row["verdict"] == "VERDICT_NOT_JUDGED") continue;
     const bool inside = row["low"] <= row["value"] && row["value"] <= row["high"];
     EXPECT_EQ(row["verdict"], inside ? "VERDICT_INSIDE" : "VERDICT_OUTSIDE") << row["what"];
   }
+}
+
+TEST(Physiology, FailsTheCheckIfARowIsOutside) {
+  const std::string junit = Scratch("breaths.xml");
+  const Outcome study = Phrenic(
+      {"physiology", "thorax", "--resolution", "20", "--preset", "quiet", "--check", "--junit", junit, "-o", "csv"});
+  EXPECT_EQ(study.code, 4) << study.err;
+  EXPECT_THAT(study.out, HasSubstr("breath,what,unit,value,low,high,verdict,note,source"));
+  EXPECT_THAT(ReadAll(junit), HasSubstr("<failure"));
 }
 
 TEST(Physiology, OfASceneWithoutADiaphragmIsRejected) {

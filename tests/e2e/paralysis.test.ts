@@ -25,12 +25,12 @@ test("AParalysedHemidiaphragmBesideAHealthyOneTakesLessThanAMinute", async () =>
   const { page } = viewer;
   const list = page.getByLabel("Compare with", { exact: true });
   expect(await list.isVisible()).toBe(true);
-  await list.selectOption({ label: "Paralysis right" });
+  await list.selectOption({ label: "Right palsy" });
   await page.waitForURL(/beside=/);
   await viewer.waitForPicture();
-  await page.locator("#view-headers").getByText("Paralysis right").waitFor();
+  await page.locator("#view-headers").getByText("Right palsy").waitFor();
   const ways = await page.locator(".view-header b").allTextContents();
-  expect(ways.toSorted()).toEqual(["Paralysis right", "Quiet"]);
+  expect(ways.toSorted()).toEqual(["Quiet breath", "Right palsy"]);
   expect(Date.now() - start).toBeLessThan(60_000);
   expect(await page.textContent(".differences")).toBe("Right muscle 0 instead of 1");
   // The list now applies to the second view.
@@ -49,10 +49,10 @@ async function times(viewer: ViewerPage): Promise<number[]> {
 test("BothViewsBreatheInStepPauseTogetherAndShareColours", async () => {
   const viewer = await ViewerPage.open(browser, server.url, { width: 1200, height: 720 });
   const { page } = viewer;
-  await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Deep" });
+  await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Deep breath" });
   await page.waitForURL(/beside=/);
   await viewer.waitForPicture();
-  await page.locator("#view-headers").getByText("Deep").waitFor();
+  await page.locator("#view-headers").getByText("Deep breath").waitFor();
   const start = await viewer.tick();
   await viewer.waitForTick(start + 400);
   const [here, there] = await times(viewer);

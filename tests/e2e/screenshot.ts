@@ -1,12 +1,13 @@
 import { join } from "node:path";
 import { test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";
+import { contactSheet } from "./contact_sheet";
 import { outFolder, Server } from "./server";
 
 const web = join(import.meta.dirname, "../../web");
 const rest = join(outFolder, "rest.msh");
 
-// Not a test: `npm run screenshot` takes the screenshots of the README, during inspiration.
+// Not tests: `npm run screenshot` takes the screenshots of the README, during inspiration.
 test("Screenshot", async () => {
   const browser = await launchBrowser();
   const server = await Server.start();
@@ -38,7 +39,7 @@ test("Screenshot", async () => {
     // A paralysed right hemidiaphragm and a healthy one side by side, at the same phase of the breath.
     await page.goto(server.url);
     await viewer.waitForPicture();
-    await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Paralysis right" });
+    await page.getByLabel("Compare with", { exact: true }).selectOption({ label: "Right palsy" });
     await page.waitForURL(/beside=/);
     await viewer.waitForPicture();
     await page.click("#reset");
@@ -54,6 +55,18 @@ test("Screenshot", async () => {
     await page.mouse.move(0, 0);
     await page.waitForTimeout(4000);
     await page.screenshot({ path: join(web, "paralysis.jpg"), type: "jpeg", quality: 85 });
+  } finally {
+    await browser.close();
+    await server.end();
+  }
+});
+
+// `npm run screenshot -- -t ContactSheet`: seven causes of breathing, side by side.
+test("ContactSheet", { timeout: 900_000 }, async () => {
+  const browser = await launchBrowser();
+  const server = await Server.start("none");
+  try {
+    await contactSheet(browser, server, join(web, "breathing.jpg"));
   } finally {
     await browser.close();
     await server.end();

@@ -160,16 +160,16 @@ describe("the buttons", () => {
   test("APresetIsAppliedAndShownAsPressed", async () => {
     const preset = (name: string) => viewer.page.locator(`#presets button:text-is("${name}")`);
     expect(await viewer.page.locator("#presets button").allTextContents()).toEqual([
-      "Quiet",
-      "Deep",
+      "Quiet breath",
+      "Deep breath",
       "Diaphragmatic",
       "Chest",
-      "Mixed",
-      "Sniff",
-      "Paralysis right",
-      "Paralysis left",
+      "Chest and diaphragm",
+      "Sniffs",
+      "Right palsy",
+      "Left palsy",
       "COPD",
-      "Tensegrity off",
+      "Without rigid links",
     ]);
     await preset("Chest").click();
     await expect
@@ -179,8 +179,8 @@ describe("the buttons", () => {
       .toBe(2.5);
     await viewer.page.waitForSelector('#presets button[aria-pressed="true"]:text-is("Chest")');
     await viewer.saveScreenshot("presets");
-    await preset("Quiet").click();
-    await viewer.page.waitForSelector('#presets button[aria-pressed="true"]:text-is("Quiet")');
+    await preset("Quiet breath").click();
+    await viewer.page.waitForSelector('#presets button[aria-pressed="true"]:text-is("Quiet breath")');
     expect(await viewer.value("breathForce")).toBe("1");
   });
 

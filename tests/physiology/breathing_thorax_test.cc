@@ -9,7 +9,7 @@
 
 #include "server/mechanics/skinning/body_points.h"
 #include "server/mechanics/step/step.h"
-#include "tests/anatomy/crossings.h"
+#include "server/mesh/self_crossings.h"
 #include "tests/physiology/generated_thorax.h"
 
 namespace phrenic {
@@ -185,7 +185,7 @@ TEST_F(BreathingThorax, NoLayerCrossesItselfInAnyBreath) {
     for (const double phase : {0.25, 0.5, 0.75}) {
       const State state = Run(parameters, phase * parameters.breath_length()).last;
       PlaceBody(*model_, state, seen, sheet.vertices);
-      EXPECT_EQ(anatomy::SelfCrossings(sheet, 0.004), 0) << preset << " at " << phase;
+      EXPECT_EQ(SelfCrossings(sheet, 0.004), 0) << preset << " at " << phase;
     }
   }
 }

@@ -12,18 +12,29 @@
 #include "server/anatomy/anatomy.h"
 #include "server/mechanics/compile/compile.h"
 #include "server/mechanics/compile/presets.h"
+#include "server/physiology/recording.h"
 #include "server/schema/schema.h"
 
 namespace phrenic {
 
-// Returns a shipped scene, for example "thorax", compiled.
-inline std::shared_ptr<const Model> CompileShipped(const std::string& name) {
+// Returns a shipped scene, for example "thorax", compiled; with a resolution [mm], all of its generated bodies have it.
+inline std::shared_ptr<const Model> CompileShipped(const std::string& name, double resolution_mm = 0) {
   std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/" + name + ".textproto");
   std::stringstream text;
   text << file.rdbuf();
-  return *Compile(*schema::ParseScene(name + ".textproto", text.str()), [](const v1::Body& body) {
-    return anatomy::Generate(body.anatomy(), body.generated().resolution_mm(), body.generated().sheet());
+  return *Compile(*schema::ParseScene(name + ".textproto", text.str()), [=](const v1::Body& body) {
+    return anatomy::Generate(body.anatomy(), resolution_mm > 0 ? resolution_mm : body.generated().resolution_mm(),
+                             body.generated().sheet());
   });
+}
+
+// Returns how far a dome has descended from rest in the column at its apex [mm].
+inline double DomeDescent(const physiology::Subject& subject, const State& state, v1::Side side) {
+  const auto column = side == v1::SIDE_LEFT ? physiology::Columns::kLeftApex : physiology::Columns::kRightApex;
+  const auto height = [&](const Points& sheet) { return subject.columns.Heights(sheet)[column]; };
+  const int sheet = subject.parts.sheet;
+  return 1e3 * (height(subject.model.bodies[static_cast<size_t>(sheet)].mesh.vertices) -
+                height(physiology::Placed(subject.model, state, sheet)));
 }
 
 // A fixture whose model all tests of a suite share.

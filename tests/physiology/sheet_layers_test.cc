@@ -5,10 +5,10 @@
 #include "server/mechanics/compile/compile.h"
 #include "server/mechanics/skinning/body_points.h"
 #include "server/mechanics/skinning/tissue_bodies.h"
+#include "server/mesh/self_crossings.h"
 #include "server/mesh/topology.h"
-#include "server/physiology/thorax_metrics.h"
 #include "server/schema/schema.h"
-#include "tests/anatomy/crossings.h"
+#include "tests/physiology/generated_thorax.h"
 
 namespace phrenic {
 namespace {
@@ -67,7 +67,7 @@ TEST_P(SheetLayersTest, LayersOfABreathNeitherCrossNorLoseTheirVolume) {
   const double rest = SignedVolume(layers.vertices, layers.triangles);
   for (const double depth : {-0.01, 0.02, 0.05}) {
     layers.vertices = Placed(*model, Breathed(model->rest, depth));
-    EXPECT_EQ(anatomy::SelfCrossings(layers, 0.004), 0) << depth;
+    EXPECT_EQ(SelfCrossings(layers, 0.004), 0) << depth;
     EXPECT_NEAR(SignedVolume(layers.vertices, layers.triangles), rest, 0.02 * rest) << depth;
   }
 }
@@ -84,15 +84,15 @@ TEST(SheetLayers, AreWhatIsExportedAndMeasured) {
   const auto model = Layers(12, 7);
   ASSERT_NE(model, nullptr);
   EXPECT_EQ(TissueBodies(*model), std::vector<int>{1});
-  const auto metrics = physiology::ThoraxMetrics::Of(*model);
-  ASSERT_TRUE(metrics.ok()) << metrics.status();
+  const auto subject = physiology::Subject::Of(*model);
+  ASSERT_TRUE(subject.ok()) << subject.status();
+  const auto shortening = [&](const Points& now) { return (*subject)->fibres.Shortening(model->rest, now); };
   State state = model->InitialState();
-  EXPECT_NEAR(metrics->ThicknessRatio(state), 1, 1e-12);
-  EXPECT_NEAR(*metrics->FibreShortening(state), 0, 1e-12);
+  EXPECT_NEAR(shortening(state.x), 0, 1e-12);
   state.x *= 0.9;
-  EXPECT_NEAR(metrics->ThicknessRatio(state), 1 / 0.81, 0.02);
-  EXPECT_NEAR(*metrics->FibreShortening(state), 0.1, 0.01);
-  EXPECT_GT(metrics->DomeDescent(state, v1::SIDE_RIGHT), 0.02);
+  EXPECT_NEAR(shortening(state.x), 0.1, 1e-9);
+  EXPECT_NEAR((*subject)->fibres.TendonAreaChange(model->rest, state.x), 0.19, 1e-9);
+  EXPECT_GT(DomeDescent(**subject, state, v1::SIDE_RIGHT), 20);
 }
 
 }  // namespace

@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <string>
 
+#include "absl/strings/str_cat.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::schema {
@@ -102,6 +104,28 @@ TEST(ParseScene, EveryShippedSceneIsValid) {
     ++scenes;
   }
   EXPECT_GE(scenes, 3);
+}
+
+// Buttons, lists and `phrenic describe` show these words.
+TEST(ParseScene, EveryShippedPresetHasATitleAndSaysWhatToLookFor) {
+  int presets = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(PHRENIC_SOURCE_DIR "/server/scenes")) {
+    std::stringstream text;
+    text << std::ifstream(entry.path()).rdbuf();
+    const auto scene = ParseScene(entry.path().filename().string(), text.str());
+    ASSERT_TRUE(scene.ok()) << scene.status();
+    std::set<std::string> titles;
+    for (const v1::Preset& preset : scene->presets()) {
+      SCOPED_TRACE(absl::StrCat(scene->name(), ", ", preset.name()));
+      EXPECT_FALSE(preset.title().empty());
+      EXPECT_LE(preset.title().size(), 24U) << "too long for a button";
+      EXPECT_TRUE(titles.insert(preset.title()).second) << "two presets of this title";
+      EXPECT_TRUE(preset.description().ends_with('.')) << preset.description();
+      EXPECT_EQ(preset.group().empty(), scene->presets(0).group().empty()) << "all presets have a group, or none";
+      ++presets;
+    }
+  }
+  EXPECT_GT(presets, 40);
 }
 
 }  // namespace

@@ -111,6 +111,20 @@ TEST(Schema, ParametersAreOptionalRealsSwitchesAndChoicesWithLabelAndHelp) {
   }
 }
 
+TEST(Schema, ParametersOfAGroupStandTogether) {
+  const Descriptor& type = *v1::Parameters::descriptor();
+  std::set<std::string> seen;
+  std::string group;
+  for (int i = 0; i < type.field_count(); ++i) {
+    const std::string next = GroupOf(*type.field(i));
+    EXPECT_FALSE(next.empty()) << type.field(i)->name() << " has no group";
+    EXPECT_TRUE(next == group || seen.insert(next).second) << type.field(i)->name() << " is apart from " << next;
+    group = next;
+  }
+  EXPECT_GE(seen.size(), 4U);
+  EXPECT_EQ(GroupOf(*v1::Scene::descriptor()->FindFieldByName("name")), "");
+}
+
 TEST(Schema, NumbersAreWrittenAsShortAsTheyReadBack) {
   EXPECT_EQ(FormatNumber(0.1), "0.1");
   EXPECT_EQ(FormatNumber(1e9), "1e+09");

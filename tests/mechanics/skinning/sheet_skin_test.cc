@@ -6,8 +6,8 @@
 
 #include "server/mechanics/skinning/body_points.h"
 #include "server/mesh/nearest.h"
+#include "server/mesh/self_crossings.h"
 #include "server/mesh/topology.h"
-#include "tests/anatomy/crossings.h"
 #include "tests/compile_text.h"
 
 namespace phrenic {
@@ -169,7 +169,7 @@ TEST(SheetSkin, LayersOfASmoothBendDoNotCross) {
     const Triangles& triangles = model->bodies[2].mesh.triangles;
     both.triangles.resize(3, 2 * triangles.cols());
     both.triangles << triangles, Triangles(triangles.array() + static_cast<int>(Rest(*model, 0).cols()));
-    EXPECT_EQ(anatomy::SelfCrossings(both, 0.001), 0) << radius;
+    EXPECT_EQ(SelfCrossings(both, 0.001), 0) << radius;
     const double apart = (Placed(*model, bent, 0) - Placed(*model, bent, 1)).colwise().norm().minCoeff();
     EXPECT_GT(apart, 1.9 * kHalf) << radius;
   }

@@ -171,6 +171,16 @@ test("ExactFramesRestartTheWatchWithoutReportingALoss", async () => {
   expect(kinds()).toEqual(["connecting", "live"]);
 });
 
+test("ChosenBodiesRestartTheWatchWithoutReportingALoss", async () => {
+  await settle();
+  for (const bodies of [["diaphragm"], ["diaphragm"], []]) {
+    connection.setBodies(bodies);
+    await settle();
+  }
+  expect(server.chosenBodies).toEqual([[], ["diaphragm"], []]);
+  expect(kinds()).toEqual(["connecting", "live"]);
+});
+
 test("ABasisIsFetchedOnceAndReportedToTheServer", async () => {
   server.basis.epoch = 4n;
   await settle();

@@ -78,6 +78,7 @@ export class FakeServer {
   /** Requested error bound of each watch [mm]. */
   readonly errorBounds: (number | undefined)[] = [];
   readonly codecs: Codec[] = [];
+  readonly chosenBodies: string[][] = [];
   /** The current basis, and the basis epochs that viewers reported. */
   basis = create(GetBasisResponseSchema, {});
   readonly reportedBasisEpochs: bigint[] = [];
@@ -178,11 +179,12 @@ export class FakeServer {
         yield server.answer(triangleBody({}));
       },
       async *watchFrames(
-        { maxErrorMm, codec }: { maxErrorMm?: number; codec: Codec },
+        { maxErrorMm, codec, bodies }: { maxErrorMm?: number; codec: Codec; bodies: string[] },
         { signal }: { signal: AbortSignal },
       ) {
         server.errorBounds.push(maxErrorMm);
         server.codecs.push(codec);
+        server.chosenBodies.push(bodies);
         yield server.answer({
           event: { case: "session" as const, value: server.session },
         });

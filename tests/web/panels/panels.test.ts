@@ -90,6 +90,28 @@ test("AParameterWithoutEffectIsHidden", () => {
   expect(hidden("pumpHandle")).toBe(false);
 });
 
+test("EachGroupOfParametersHasASectionUnlessNoneHasAnEffect", () => {
+  const report = new Signal<CompileReport | undefined>(undefined);
+  const sections = parameterSections(controller, report);
+  const titles = () =>
+    sections.filter((each) => !each.hidden).map((each) => each.querySelector("summary")!.textContent);
+  expect(titles()).toEqual([
+    "Breathing",
+    "Muscles",
+    "Lungs and airways",
+    "Posture, chest wall and abdomen",
+    "Controls of the thesis",
+    "Solver",
+  ]);
+  const [postureSection] = sections.filter((each) => each.querySelector("#parameter-posture") !== null);
+  expect(postureSection.querySelectorAll("input, select").length).toBeGreaterThan(3);
+  const idleParameters = ["posture", "chest_wall_compliance", "abdominal_compliance", "abdominal_load"];
+  report.set(create(CompileReportSchema, { idleParameters: idleParameters.slice(1) }));
+  expect(postureSection.hidden).toBe(false);
+  report.set(create(CompileReportSchema, { idleParameters }));
+  expect(titles()).not.toContain("Posture, chest wall and abdomen");
+});
+
 test("ThePlayButtonIsLabelledByItsAction", () => {
   const play = playbackPanel(controller).querySelector("#play")!;
   expect(play.ariaLabel).toBe("Pause");

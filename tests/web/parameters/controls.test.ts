@@ -21,6 +21,13 @@ describe("controls from the schema", () => {
     for (const { label, help } of controls) expect([label.length > 0, help.length > 0]).toEqual([true, true]);
   });
 
+  test("ThoseOfAGroupStandTogether", () => {
+    const groups = controls.map(({ group }) => group);
+    const runs = groups.filter((group, i) => group !== groups[i - 1]);
+    expect(runs).toEqual([...new Set(groups)]);
+    expect(groups).not.toContain("");
+  });
+
   test("RangesUnitsAndDefaultsAreFieldOptions", () => {
     expect(find("breathLength")).toMatchObject({
       unit: "s",
@@ -38,12 +45,12 @@ describe("controls from the schema", () => {
 
   test("RangesOverThreeDecadesAreLogarithmic", () => {
     expect(numbers.filter((control) => control.logarithmic).map((control) => control.field)).toEqual([
-      "timeStep",
-      "elasticity",
-      "airwayResistance",
       "lungCompliance",
+      "airwayResistance",
       "chestWallCompliance",
       "abdominalCompliance",
+      "elasticity",
+      "timeStep",
     ]);
   });
 });

@@ -45,7 +45,7 @@ describe("the page of a study", () => {
     const header = page.querySelector("header")!.textContent!;
     expect(page.querySelector("h1")!.textContent).toBe("Error against run time: thorax");
     expect(header).toContain("3d6792551747970ab59dde977832208208ed8ef8525ebe03783601e643b0e8d9");
-    expect(header).toContain("breath force 1 · breath length 4 s");
+    expect(header).toContain("breath length 4 s · apply muscles on");
     expect(header).toContain("integrator Semi-implicit Euler");
     expect(header).toContain("2 s simulated");
     expect(document.title).toBe("Error against run time: thorax – Phrenic");
@@ -240,5 +240,43 @@ describe("the cost study", () => {
     show(withTable(costStudy as never, "cost", { rows }));
     expect(captions().length).toBe(1);
     expect(all("tbody tr").length).toBe(2);
+  });
+});
+
+describe("the page of physiology", () => {
+  const curve = (breath: string, what: string, unit: string) => ({
+    breath,
+    what,
+    unit,
+    timeS: [0, 1, 2],
+    values: [0, 2, 1],
+  });
+  const study = {
+    ...done,
+    result: {
+      scene: "thorax-muscle",
+      physiology: {
+        rows: [
+          { breath: "quiet", what: "tidal volume", unit: "l", value: 0.6, verdict: "VERDICT_INSIDE" },
+          { breath: "deep", what: "tendon area change", unit: "%", value: 6, verdict: "VERDICT_OUTSIDE" },
+          { breath: "deep", what: "mean descent", unit: "mm", value: 27, verdict: "VERDICT_NOT_JUDGED" },
+        ],
+        curves: [
+          curve("quiet", "lung volume", "l"),
+          curve("quiet", "right dome, apex", "mm"),
+          curve("deep", "lung volume", "l"),
+        ],
+      },
+    },
+  };
+
+  test("DrawsTheCurvesOfTheBreathThatIsChosen", () => {
+    show(study);
+    expect(page.querySelector("h1")!.textContent).toBe("Physiology: thorax-muscle");
+    expect(page.textContent).toContain("1 of 2 values are inside");
+    expect(all("figure svg[role=img]").length).toBe(2);
+    const [, deep] = all("input[name=breath]") as HTMLInputElement[];
+    deep.onchange!(new Event("change"));
+    expect(all("figure svg[role=img]").length).toBe(1);
   });
 });

@@ -135,7 +135,9 @@ export class App {
     this.buildHeader();
     this.layerStyles.all.subscribe((styles) => {
       for (const { layer, opacity, visible } of styles) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
+      this.connection.setBodies(this.layerStyles.neededBodies(this.bodies.value));
     });
+    this.comparisons.result.subscribe((result) => result && this.showLayerOf(result.body));
     // Playing ends the replay.
     let playing = true;
     this.controller.session.subscribe((session) => {
@@ -213,10 +215,11 @@ export class App {
 
   private buildPanel(): void {
     const { controller, layerStyles } = this;
-    const [breathing, solver] = parameterSections(controller, this.report, this.presets);
+    const sections = parameterSections(controller, this.report, this.presets);
+    const solver = sections.pop()!;
     elementById("panel").append(
       presetComparison(controller, this.presets, this.target.open),
-      controlledGroup(this.participation, breathing),
+      controlledGroup(this.participation, ...sections),
       this.tools.panel,
       layersPanel(layerStyles),
       controlledGroup(this.participation, solver),
@@ -299,6 +302,12 @@ export class App {
     this.layerStyles.start(bodies, report);
     this.tools.start(bodies, this.tissue, diagram);
     elementById("loading").hidden = true;
+  }
+
+  /** Shows the layer of a body, if it is hidden. */
+  private showLayerOf(name: string): void {
+    const layer = this.bodies.value.find((body) => body.name === name)?.layer ?? "";
+    if (this.layerStyles.get(layer)?.visible === false) this.layerStyles.change(layer, { visible: true });
   }
 
   /** Returns the body of tissue with the most triangles. */

@@ -51,6 +51,7 @@ export class SecondView {
   private readonly colorizer: VertexColorizer;
   private readonly ghosts: GhostSelector;
   private readonly annotations: Annotations;
+  private bodies: Body[] = [];
   private leadsCamera = false;
   private checksOutOfStep = 0;
 
@@ -173,6 +174,7 @@ export class SecondView {
 
   private show(bodies: Body[], tissueNames: ReadonlySet<string>): void {
     const tissue = bodies.filter(({ name }) => tissueNames.has(name));
+    this.bodies = bodies;
     this.frames.start(bodies);
     this.viewer.show(bodies);
     this.colorizer.start(tissue);
@@ -185,6 +187,7 @@ export class SecondView {
     const styles = this.primary.layerStyles.all.value;
     for (const { layer, opacity, visible } of styles) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
     this.annotations.setLayers(styles);
+    this.connection.setBodies(this.primary.layerStyles.neededBodies(this.bodies));
   }
 
   private updateFields(): void {

@@ -1,4 +1,5 @@
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
+import { Placement } from "../gen/phrenic/v1/frames_pb";
 import type { Body } from "../geometry/bodies";
 import { Signal } from "../state/signal";
 
@@ -16,20 +17,36 @@ export class LayerStyles {
   readonly all = new Signal<LayerStyle[]>([]);
   /** The layer with the most vertices of tissue. */
   mainLayer = "";
+  /** Layers that the scene hides and this viewer has not shown yet. */
+  private readonly unseen = new Set<string>();
 
-  /** Starts another scene with the styles that it defines. */
+  /** Starts another scene with the styles that it defines; layers of opacity 0 are hidden, and opaque once shown. */
   start(bodies: Body[], report: CompileReport): void {
     const styles = new Map<string, LayerStyle>();
     for (const { layer, layerTitle, color, opacity } of bodies) {
-      if (!styles.has(layer)) styles.set(layer, { layer, title: layerTitle, color, opacity, visible: true });
+      const style = { layer, title: layerTitle, color, opacity: opacity || 1, visible: opacity > 0 };
+      if (!styles.has(layer)) styles.set(layer, style);
     }
+    this.unseen.clear();
+    for (const { layer, visible } of styles.values()) if (!visible) this.unseen.add(layer);
     this.mainLayer = mainLayer(report);
     this.all.set([...styles.values()]);
   }
 
   /** Changes some properties of a layer's style. */
   change(layer: string, change: Partial<LayerStyle>): void {
+    if (change.visible === true) this.unseen.delete(layer);
     this.all.set(this.all.value.map((style) => (style.layer === layer ? { ...style, ...change } : style)));
+  }
+
+  /**
+   * Returns the streamed bodies whose positions this viewer needs, by name; empty for all. A layer that was shown once is
+   * needed from then on, so that the server encodes few selections of bodies.
+   */
+  neededBodies(bodies: Body[]): string[] {
+    const streamed = bodies.filter(({ placement }) => placement === Placement.STREAMED);
+    const needed = streamed.filter(({ layer }) => !this.unseen.has(layer));
+    return needed.length === streamed.length ? [] : needed.map(({ name }) => name);
   }
 
   /** Returns the style of a layer; undefined for an unknown layer. */

@@ -56,6 +56,7 @@ export class SessionConnection {
   private watchRestart = new AbortController();
   private exact = false;
   private codec = Codec.PREDICTED;
+  private bodies: string[] = [];
 
   constructor(
     private readonly api: Api,
@@ -96,6 +97,13 @@ export class SessionConnection {
   setCodec(codec: Codec): void {
     if (codec === this.codec) return;
     this.codec = codec;
+    this.watchRestart.abort();
+  }
+
+  /** Requests the positions of these bodies only; of all if empty. */
+  setBodies(bodies: string[]): void {
+    if (bodies.join("\n") === this.bodies.join("\n")) return;
+    this.bodies = bodies;
     this.watchRestart.abort();
   }
 
@@ -169,7 +177,7 @@ export class SessionConnection {
       },
     );
     const maxErrorMm = this.exact ? exactErrorMm : undefined;
-    const request = { ...names, codec: this.codec, maxUnackedFrames, maxErrorMm };
+    const request = { ...names, codec: this.codec, bodies: this.bodies, maxUnackedFrames, maxErrorMm };
     for await (const { event } of this.api.frames.watchFrames(request, { signal })) {
       this.backoff.reset();
       this.listener.state({ kind: "live" });

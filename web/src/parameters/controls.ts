@@ -1,11 +1,13 @@
 import { type DescEnum, type DescField, type DescMessage, getOption, hasOption } from "@bufbuild/protobuf";
-import { choice, quantity, type Quantity, toggle } from "../gen/phrenic/v1/options_pb";
+import { choice, group, quantity, type Quantity, toggle } from "../gen/phrenic/v1/options_pb";
 import { type Parameters, ParametersSchema } from "../gen/phrenic/v1/parameters_pb";
 
 /** A control for a number; all properties come from the options of the field. */
 export interface NumberControl {
   kind: "number";
   field: string;
+  /** Heading under which panels show the control; empty if the field has none. */
+  group: string;
   label: string;
   help: string;
   unit: string;
@@ -23,6 +25,7 @@ export interface NumberControl {
 export interface SwitchControl {
   kind: "switch";
   field: string;
+  group: string;
   label: string;
   help: string;
   defaultValue: boolean;
@@ -32,6 +35,7 @@ export interface SwitchControl {
 export interface ChoiceControl {
   kind: "choice";
   field: string;
+  group: string;
   label: string;
   help: string;
   defaultValue: number;
@@ -52,7 +56,7 @@ export function controlsOf(message: DescMessage): Control[] {
 }
 
 function controlOf(field: DescField): Control | undefined {
-  if (hasOption(field, quantity)) return numberControl(field.localName, getOption(field, quantity));
+  if (hasOption(field, quantity)) return numberControl(field, getOption(field, quantity));
   if (hasOption(field, toggle)) return { kind: "switch", ...descriptionOf(field, getOption(field, toggle)) };
   if (field.fieldKind !== "enum" || !hasOption(field, choice)) return undefined;
   return { kind: "choice", ...descriptionOf(field, getOption(field, choice)), options: optionsOf(field.enum) };
@@ -62,7 +66,13 @@ function descriptionOf<T>(
   field: DescField,
   { label, help, defaultValue }: { label: string; help: string; defaultValue: T },
 ) {
-  return { field: field.localName, label: label || field.localName, help, defaultValue };
+  return {
+    field: field.localName,
+    group: getOption(field, group),
+    label: label || field.localName,
+    help,
+    defaultValue,
+  };
 }
 
 /** Returns all values except the unspecified one. */
@@ -83,18 +93,15 @@ export function parameterControls(): Control[] {
   return controlsOf(ParametersSchema);
 }
 
-function numberControl(field: string, q: Quantity): NumberControl {
+function numberControl(field: DescField, q: Quantity): NumberControl {
   const logarithmic = q.minimum > 0 && q.maximum / q.minimum >= 1000;
   const span = logarithmic ? Math.log10(q.maximum / q.minimum) : q.maximum - q.minimum;
   return {
     kind: "number",
-    field,
-    label: q.label || field,
-    help: q.help,
+    ...descriptionOf(field, q),
     unit: q.unit === "1" ? "" : q.unit,
     minimum: q.minimum,
     maximum: q.maximum,
-    defaultValue: q.defaultValue,
     automatic: q.automatic,
     logarithmic,
     step: !logarithmic && q.increment > 0 ? q.increment : span / 400,

@@ -2,9 +2,16 @@ import { type Parameters, ParametersSchema } from "../gen/phrenic/v1/parameters_
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import type { ParameterName } from "./controls";
 
-/** Formats "paralysis-right" as "Paralysis right". */
-export function presetLabel({ name }: Preset): string {
-  return name.charAt(0).toUpperCase() + name.slice(1).replaceAll("-", " ");
+/** Returns the title, or the name as words if there is none: "paralysis-right" as "Paralysis right". */
+export function presetLabel({ name, title }: Preset): string {
+  return title || name.charAt(0).toUpperCase() + name.slice(1).replaceAll("-", " ");
+}
+
+/** Returns the presets by group, in the order in which the scene names the groups first. */
+export function presetGroups(presets: Preset[]): Map<string, Preset[]> {
+  const groups = new Map<string, Preset[]>();
+  for (const preset of presets) groups.set(preset.group, [...(groups.get(preset.group) ?? []), preset]);
+  return groups;
 }
 
 /** Returns the first preset that is active. */

@@ -11,6 +11,7 @@ const kinds = {
   stability: "Stability",
   cost: "Cost",
   streaming: "Error against bandwidth",
+  physiology: "Physiology",
 };
 
 /** Returns "Cost: thorax – Phrenic". */
@@ -50,7 +51,8 @@ function factsOf({ sceneHash, parameters, tookS, result }: StudyResult): [string
   if (parameters !== undefined) facts.push(["Parameters", parameterSummary(parameters)]);
   const simulated = result.case === "error" ? result.value.seconds : 0;
   const took = `the study took ${formatDigits(tookS, 3)} s`;
-  facts.push(["Duration", simulated > 0 ? `${formatDigits(simulated)} s simulated; ${took}` : took]);
+  if (result.case !== "physiology")
+    facts.push(["Duration", simulated > 0 ? `${formatDigits(simulated)} s simulated; ${took}` : took]);
   if (sceneHash !== "") facts.push(["Scene's hash", sceneHash]);
   return facts;
 }

@@ -5,6 +5,7 @@ import type { StudyResult } from "../gen/phrenic/v1/study_results_pb";
 import { costParts } from "./cost_page";
 import { errorParts } from "./error_page";
 import { header, titleOf } from "./header";
+import { physiologyParts } from "./physiology_page";
 import { stabilityParts } from "./stability_page";
 import { streamingParts } from "./streaming_page";
 
@@ -33,6 +34,7 @@ function partsOf({ result }: StudyResult): HTMLElement[] {
   if (result.case === "error") return errorParts(result.value);
   if (result.case === "stability") return stabilityParts(result.value);
   if (result.case === "cost") return costParts(result.value);
+  if (result.case === "physiology") return physiologyParts(result.value);
   return result.case === "streaming" ? streamingParts(result.value) : [];
 }
 

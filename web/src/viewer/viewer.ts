@@ -130,6 +130,7 @@ export class Viewer {
   /** Sets the opacity of all bodies of a layer, 0 to 1. */
   setLayerOpacity(layer: string, opacity: number): void {
     for (const view of this.views) if (view.body.layer === layer) view.setOpacity(opacity);
+    this.shown = undefined; // hidden bodies did not follow the frames
     this.refresh();
   }
 
@@ -240,7 +241,7 @@ export class Viewer {
     this.dirty = false;
     const frame = this.host.frame();
     if (frame !== undefined && frame !== this.shown) {
-      for (const view of this.views) view.update(frame);
+      for (const view of this.views) if (view.group.visible) view.update(frame);
       this.host.beforeDraw?.(frame);
       this.dirty = false;
     }

@@ -1,5 +1,5 @@
 import { create } from "@bufbuild/protobuf";
-import { beforeEach, expect, test } from "vitest";
+import { beforeEach, describe, expect, test } from "vitest";
 import { ParametersSchema } from "../../../../web/src/gen/phrenic/v1/parameters_pb";
 import { SessionSchema } from "../../../../web/src/gen/phrenic/v1/session_pb";
 import { PresetRow } from "../../../../web/src/panels/parameters/preset_row";
@@ -32,7 +32,7 @@ beforeEach(async () => {
 });
 
 test("EachPresetHasAButton", () => {
-  expect(buttons().map((each) => each.textContent)).toEqual(["Quiet", "Deep"]);
+  expect(buttons().map((each) => each.textContent)).toEqual(["Quiet breath", "Deep breath"]);
   expect(buttons().map((each) => each.title)).toEqual(["Quiet breath", "Deep breath"]);
   expect(row.element.hidden).toBe(false);
 });
@@ -44,11 +44,50 @@ test("AButtonSendsItsPresetByName", async () => {
 });
 
 test("TheActivePresetIsPressed", () => {
-  expect(pressed()).toEqual(["Quiet"]);
+  expect(pressed()).toEqual(["Quiet breath"]);
   controller.receive(session(2n, { breathForce: 2, ribMotion: 3.3 }));
-  expect(pressed()).toEqual(["Deep"]);
+  expect(pressed()).toEqual(["Deep breath"]);
   controller.receive(session(3n, { breathForce: 2, ribMotion: 1 }));
   expect(pressed()).toEqual([]);
+});
+
+describe("presets in groups", () => {
+  const folds = () => [...row.element.querySelectorAll("details")];
+  const open = () => folds().map((each) => each.open);
+  const said = () => row.element.querySelector("p")!.textContent;
+
+  beforeEach(async () => {
+    server.presets = [
+      { name: "quiet", group: "Breathing", description: "Both share.", parameters: { breathForce: 1, ribMotion: 1 } },
+      { name: "palsy", title: "Palsy", group: "Disease", description: "One rests.", parameters: { breathForce: 0 } },
+      { name: "deep-breath", group: "Breathing", description: "Both pull.", parameters: { breathForce: 2 } },
+    ];
+    controller.receive(session(2n, { breathForce: 1, ribMotion: 1 }, "another"));
+    await settle();
+  });
+
+  test("StandBelowTheirHeadingInTheOrderOfTheScene", () => {
+    expect(folds().map((each) => each.querySelector("summary")!.textContent)).toEqual(["Breathing", "Disease"]);
+    const names = folds().map((each) => [...each.querySelectorAll("button")].map(({ textContent }) => textContent));
+    expect(names).toEqual([["Quiet", "Deep breath"], ["Palsy"]]);
+  });
+
+  test("TheGroupOfTheActivePresetOpensOnceAndStaysAsTheUserFoldsIt", () => {
+    expect(open()).toEqual([true, false]);
+    controller.receive(session(3n, { breathForce: 0, ribMotion: 1 }, "another"));
+    expect(open()).toEqual([true, true]);
+    folds()[1].open = false;
+    controller.receive(session(4n, { breathForce: 0, ribMotion: 1 }, "another"));
+    expect(open()).toEqual([true, false]);
+  });
+
+  test("TheDescriptionFollowsTheActivePreset", () => {
+    expect(said()).toBe("Both share.");
+    controller.receive(session(3n, { breathForce: 0, ribMotion: 1 }, "another"));
+    expect(said()).toBe("One rests.");
+    controller.receive(session(4n, { breathForce: 9, ribMotion: 1 }, "another"));
+    expect(said()).toBe("The parameters are those of no preset.");
+  });
 });
 
 test("ASceneWithoutPresetsHasNoRow", async () => {

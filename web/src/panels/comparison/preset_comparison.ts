@@ -1,7 +1,7 @@
 import { make } from "../../dom/elements";
 import { labelledRow } from "../../dom/rows";
 import type { Preset } from "../../gen/phrenic/v1/scene_pb";
-import { activePreset, presetLabel } from "../../parameters/presets";
+import { activePreset, presetGroups, presetLabel } from "../../parameters/presets";
 import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
 
@@ -32,12 +32,17 @@ export function presetComparison(
   presets.subscribe((all) => {
     row.hidden = all.length === 0;
     const none = make("option", { value: "", disabled: true }, companion === undefined ? "Choose…" : "Custom");
-    list.replaceChildren(
-      none,
-      ...all.map((each) => make("option", { value: each.name, title: each.title }, presetLabel(each))),
-    );
+    list.replaceChildren(none, ...[...presetGroups(all)].flatMap(([name, members]) => presetOptions(name, members)));
     mark();
   });
   companion?.session.subscribe(mark);
   return row;
+}
+
+/** The options of a group of presets, below its name unless that is empty. */
+function presetOptions(group: string, members: Preset[]): HTMLElement[] {
+  const options = members.map((each) =>
+    make("option", { value: each.name, title: each.description }, presetLabel(each)),
+  );
+  return group === "" ? options : [make("optgroup", { label: group }, ...options)];
 }

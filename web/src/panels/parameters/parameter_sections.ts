@@ -12,12 +12,10 @@ import { NumberRow } from "./number_row";
 import { PresetRow } from "./preset_row";
 import { pullRow } from "./pull_row";
 
-/** Matches the names of the solver's parameters; all others belong to breathing. */
-const solverParameter = /integrator|step|solver/i;
-
 /**
- * Sections with the live parameters, one row per field of the schema. Rows of parameters without effect in this scene
- * are hidden. Rows follow the changes of other viewers.
+ * Sections with the live parameters, one per group and one row per field of the schema; the first has the presets too,
+ * the last is the solver's. Parameters without effect in this scene are hidden, and groups that have no others. Rows
+ * follow the changes of other viewers.
  */
 export function parameterSections(
   controller: SessionController,
@@ -29,17 +27,26 @@ export function parameterSections(
     if (session?.parameters === undefined) return;
     for (const { name, show } of rows) if (!controller.pending(name)) show(session.parameters[name]);
   });
+  const sections = groupSections(rows);
   report?.subscribe((value) => {
     const idle = new Set(value?.idleParameters.map((name) => localNameOf(name)));
     for (const { name, element } of rows) element.hidden = idle.has(name);
+    for (const { element, members } of sections.slice(1)) element.hidden = members.every(({ name }) => idle.has(name));
   });
-  const elements = (solver: boolean) =>
-    rows.filter(({ name }) => solverParameter.test(name) === solver).map(({ element }) => element);
   const ways = new PresetRow(controller, presets).element;
-  return [
-    section("Breathing", true, ways, changesRow(controller), pullRow(controller), ...elements(false)),
-    section("Solver", true, ...elements(true)),
-  ];
+  const [first] = sections;
+  first.element.querySelector("summary")?.after(ways, changesRow(controller), pullRow(controller));
+  return sections.map(({ element }) => element);
+}
+
+/** Returns a section for each group of rows, in the order of the schema. */
+function groupSections(rows: Row[]): { element: HTMLElement; members: Row[] }[] {
+  const groups = new Map<string, Row[]>();
+  for (const row of rows) groups.set(row.group, [...(groups.get(row.group) ?? []), row]);
+  return [...groups].map(([title, members]) => ({
+    element: section(title, true, ...members.map(({ element }) => element)),
+    members,
+  }));
 }
 
 /** Buttons to undo, redo and reset all parameters. */
@@ -61,6 +68,7 @@ function localNameOf(name: string): string | undefined {
 
 interface Row {
   name: ParameterName;
+  group: string;
   element: HTMLElement;
   show(value: number | boolean | undefined): void;
 }
@@ -73,7 +81,8 @@ function parameterRow(control: Control, controller: SessionController): Row {
     reset: () => void reset(controller, name),
   };
   const row = control.kind === "choice" ? new ChoiceRow(control, events) : new NumberRow(control, events);
-  return { name, element: row.element, show: (value) => typeof value === "number" && row.show(value) };
+  const { group } = control;
+  return { name, group, element: row.element, show: (value) => typeof value === "number" && row.show(value) };
 }
 
 function parameterSwitch(control: SwitchControl, name: ParameterName, controller: SessionController): Row {
@@ -81,6 +90,7 @@ function parameterSwitch(control: SwitchControl, name: ParameterName, controller
   input.id = `parameter-${name}`;
   return {
     name,
+    group: control.group,
     element: row,
     show: (value) => (input.checked = value === undefined ? input.checked : value === true),
   };

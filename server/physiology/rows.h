@@ -1,0 +1,49 @@
+// The acceptance table: what is measured in which breath, and between which values it lies in people.
+#ifndef PHRENIC_SERVER_PHYSIOLOGY_ROWS_H_
+#define PHRENIC_SERVER_PHYSIOLOGY_ROWS_H_
+
+#include <span>
+
+#include "server/physiology/measures.h"
+
+namespace phrenic::physiology {
+
+// A breath that is no preset of a scene, but a preset with parameters changed.
+struct ChangedBreath {
+  const char* name;
+  const char* preset;
+  const char* changes;  // text of v1::Parameters
+};
+
+// What a scene may lack.
+enum class Needs { kSheet, kFibres, kWall, kBones, kLungs, kPressures };
+
+struct Row {
+  const char* breath;
+  const char* what;
+  const char* unit;
+  double low, high;  // equal: there is no published range
+  BreathMeasure measure;
+  Needs needs;
+  const char* source;
+  const char* other = "";  // the breath that it is compared with
+};
+
+// What holds in every breath: none of these may exceed the value.
+struct FlawRow {
+  Flaw flaw;
+  const char* what;
+  const char* unit;
+  double scale;  // from SI to that unit
+  double high;
+  Needs needs;
+};
+
+std::span<const ChangedBreath> ChangedBreaths();
+std::span<const Row> RowsOfHealth();
+std::span<const Row> RowsOfChanges();
+std::span<const FlawRow> FlawRows();
+
+}  // namespace phrenic::physiology
+
+#endif  // PHRENIC_SERVER_PHYSIOLOGY_ROWS_H_

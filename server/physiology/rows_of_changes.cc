@@ -1,0 +1,53 @@
+#include "server/physiology/rows.h"
+
+namespace phrenic::physiology {
+namespace {
+
+constexpr const char *kRange = "general knowledge", *kSign = "sign of the effect", *kThird = "about a third of health";
+constexpr Needs kAir = Needs::kPressures;
+
+constexpr ChangedBreath kBreaths[] = {
+    {"quiet, stiff lungs", "quiet", "lung_compliance: 0.25"},
+    {"quiet, narrow airways", "quiet", "airway_resistance: 10"},
+    {"sniff, right palsy", "sniff", "right_activation: 0"},
+    {"sniff, COPD", "sniff", "lung_compliance: 1.6 trapped_air: 0.0008"},
+    {"deep, obesity", "deep", "abdominal_load: 700 abdominal_compliance: 0.6 chest_wall_compliance: 0.6"},
+    {"deep, ascites", "deep", "abdominal_load: 1000 abdominal_compliance: 0.4"},
+};
+
+constexpr Row kChangedRows[] = {
+    {"sniff, right palsy", "right dome, rise", "mm", 2, 15, &RightRise, Needs::kSheet, kRange},
+    {"sniff, right palsy", "transdiaphragmatic pressure of health's", "%", 25, 45, &PdiShare, kAir, kThird, "sniff"},
+    {"palsy-both", "both domes, rise at the end of inspiration", "mm", 0.5, 60, &BothRise, Needs::kSheet, kSign},
+    {"palsy-both", "abdominal share of volume", "%", -200, 0, &AbdominalShare, kAir, kSign},
+    {"sniff, COPD", "ribs 7-10 drawn in", "mm", 0.5, 30, &RibsDrawnIn, kAir, "Hoover's sign"},
+    {"copd", "volume at rest over health's", "l", 0.5, 1.5, &VolumeAbove, kAir, kRange, "quiet"},
+    {"copd", "descent of the right dome, of health's", "%", 40, 80, &DescentShare, kAir, kRange, "quiet"},
+    {"upright", "volume at rest over supine", "l", 0.4, 1.0, &VolumeAbove, kAir, kRange, "quiet"},
+    {"upright", "right dome at rest over supine", "mm", -60, -1, &ApexAbove, kAir, kSign, "quiet"},
+    {"upright", "abdominal share below supine", "points", 10, 25, &AbdominalShareLost, kAir, kRange, "quiet"},
+    {"obesity", "volume at rest over health's", "l", -0.8, -0.2, &VolumeAbove, kAir, kRange, "quiet"},
+    {"obesity", "right dome at rest over health's", "mm", 1, 60, &ApexAbove, kAir, kSign, "quiet"},
+    {"deep, obesity", "descent of the right dome, of health's", "%", 0, 99, &DescentShare, kAir, kSign, "deep"},
+    {"ascites", "volume at rest over health's", "l", -0.8, -0.2, &VolumeAbove, kAir, kRange, "quiet"},
+    {"ascites", "right dome at rest over health's", "mm", 1, 60, &ApexAbove, kAir, kSign, "quiet"},
+    {"deep, ascites", "descent of the right dome, of health's", "%", 0, 99, &DescentShare, kAir, kSign, "deep"},
+    {"quiet, stiff lungs", "tidal volume lost", "%", 25, 60, &TidalVolumeLost, kAir, kRange, "quiet"},
+    {"quiet, stiff lungs", "descent of the right dome, of health's", "%", 0, 99, &DescentShare, kAir, kSign, "quiet"},
+    {"quiet, narrow airways", "greatest flow in, of health's", "1", 0, 0.95, &FlowShare, kAir, kSign, "quiet"},
+    {"quiet, narrow airways", "work of a litre over health's", "1", 1.05, 100, &WorkShare, kAir, kSign, "quiet"},
+    {"quiet, narrow airways", "pressure-volume loop over health's", "1", 1.5, 100, &LoopShare, kAir, kSign, "quiet"},
+    {"ventilator", "volume breathed in", "l", 0.5, 1.1, &InspiredVolume, kAir, kRange},
+    {"ventilator", "lesser dome, descent", "mm", 0.5, 60, &LesserDescent, kAir, kSign},
+    {"ventilator", "back over front descent", "1", 0, 1, &BackOverFront, kAir, kRange},
+    {"mueller", "volume change", "l", 0, 0.05, &TidalVolume, kAir, kRange},
+    {"mueller", "pleural pressure, fall over a quiet breath's", "1", 1, 50, &PleuralFallShare, kAir, kSign, "quiet"},
+    {"mueller", "domes, greatest motion", "mm", 0, 5, &DomeMotion, kAir, "almost still"},
+};
+
+}  // namespace
+
+std::span<const ChangedBreath> ChangedBreaths() { return kBreaths; }
+std::span<const Row> RowsOfChanges() { return kChangedRows; }
+
+}  // namespace phrenic::physiology
