@@ -20,7 +20,7 @@ namespace {
 
 const char kPlain[] = "springs, plain loop with scatter", kSprings[] = "springs";
 const char kEuler[] = "springs and Euler's step", kEulerSingle[] = "springs and Euler's step, single";
-const char kThorax[] = "thorax, the whole step";
+const char kThorax[] = "thorax, the whole step", kThesis[] = "thorax-thesis, the whole step";
 const char kMeasures[] = "thorax' measures, a frame";
 const char kFew[] = "rigid links, few", kMany[] = "rigid links, ten times as many";
 const char kCache[] = "triad, 12 MB", kMultiplyAdds[] = "multiply-adds";
@@ -69,7 +69,7 @@ class Bench {
 
   absl::Status status() const {
     absl::Status status;
-    for (const Run* run : {&euler_, &euler_single_, &thorax_, &unlinked_, &implicit_, &few_, &many_})
+    for (const Run* run : {&euler_, &euler_single_, &thorax_, &thesis_, &unlinked_, &implicit_, &few_, &many_})
       status.Update(run->status);
     return status;
   }
@@ -117,7 +117,10 @@ class Bench {
   void RegisterThorax(Table& table) {
     const auto vertices = static_cast<double>(subjects_.thorax->rest.cols());
     table.Register({kThorax, [this] { thorax_.Step(); }, vertices, "vertex", kEulerSingle});
-    table.Register({"thorax without its rigid links", [this] { unlinked_.Step(); }, vertices, "vertex", kThorax});
+    const auto thesis = static_cast<double>(subjects_.thesis->rest.cols());
+    table.Register({kThesis, [this] { thesis_.Step(); }, thesis, "vertex", kEulerSingle});
+    table.Register(
+        {"thorax-thesis without its rigid links", [this] { unlinked_.Step(); }, thesis, "vertex", kThesis});
     const auto measure = [this] {
       const EvalContext at = MakeEvalContext(*subjects_.thorax, thorax_.parameters, thorax_.state, scratch_);
       benchmark::DoNotOptimize(ReadMeasures(*subjects_.thorax, at));
@@ -163,7 +166,7 @@ class Bench {
   Run euler_{subjects_.springs}, euler_single_{subjects_.single_springs}, implicit_{subjects_.springs},
       membrane_{subjects_.membrane}, muscle_{subjects_.muscle};
   Points muscle_force_ = Points::Zero(3, subjects_.muscle->rest.cols());
-  Run thorax_{subjects_.thorax}, unlinked_{subjects_.thorax};
+  Run thorax_{subjects_.thorax}, thesis_{subjects_.thesis}, unlinked_{subjects_.thesis};
   Run few_{subjects_.few_links}, many_{subjects_.many_links};
 #ifdef PHRENIC_BULLET
   BulletBody once_{subjects_.springs->rest, subjects_.springs->inverse_mass, springs_, 1};

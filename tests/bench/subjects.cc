@@ -89,10 +89,10 @@ void Solver::Solve() {
 absl::StatusOr<Subjects> MakeSubjects() {
   Subjects subjects;
   subjects.meshes = OnceEach();
-  const auto thorax = session::SceneCatalogue({PHRENIC_SCENES_DIR}).Find("thorax");
-  if (!thorax.ok()) return thorax.status();
+  const session::SceneCatalogue scenes({PHRENIC_SCENES_DIR});
   const std::pair<ModelPointer*, absl::StatusOr<v1::Scene>> wanted[] = {
-      {&subjects.thorax, thorax},
+      {&subjects.thorax, scenes.Find("thorax")},
+      {&subjects.thesis, scenes.Find("thorax-thesis")},
       {&subjects.springs, schema::ParseScene("springs", Springs(""))},
       {&subjects.single_springs, schema::ParseScene("springs", Springs("precision: PRECISION_SINGLE"))},
       {&subjects.membrane,

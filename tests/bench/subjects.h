@@ -45,7 +45,7 @@ class Solver {
 
 struct Subjects {
   MeshSource meshes;  // makes each once
-  ModelPointer springs, single_springs, membrane, muscle, thorax, few_links, many_links;
+  ModelPointer springs, single_springs, membrane, muscle, thorax, thesis, few_links, many_links;
 };
 
 absl::StatusOr<Subjects> MakeSubjects();

@@ -34,7 +34,7 @@ const views = [
 const size = { width: 760, height: 760 };
 const clip = { x: 187, y: 88, width: 386, height: 560 };
 
-/** Writes a picture of the presets of `thorax-muscle`, with the resting position as a ghost. */
+/** Writes a picture of the presets of `thorax`, with the resting position as a ghost. */
 export async function contactSheet(browser: Browser, server: Server, path: string): Promise<void> {
   const tiles: string[] = [];
   for (const [i, column] of columns.entries()) tiles.push(await columnOf(browser, server, column, `session-${i}`));
@@ -48,7 +48,7 @@ export async function contactSheet(browser: Browser, server: Server, path: strin
 }
 
 async function columnOf(browser: Browser, server: Server, { preset, title, time, cut }: Column, id: string) {
-  await server.phrenic("create", "thorax-muscle", "--id", id, "--preset", preset);
+  await server.phrenic("create", "thorax", "--id", id, "--preset", preset);
   await server.phrenic("play", id, "--fast", "--until", String(time));
   while (await isPlaying(server, id)) await sleep(200);
   const viewer = await ViewerPage.open(browser, `${server.url}?session=${id}`, size);

@@ -8,7 +8,7 @@ let browser: Browser;
 let viewer: ViewerPage;
 
 beforeAll(async () => {
-  [browser, server] = await startAll("thorax-muscle");
+  [browser, server] = await startAll("thorax");
   viewer = await ViewerPage.open(browser, server.url);
 });
 

@@ -41,7 +41,7 @@ struct Curves {
 
 class BreathingThorax : public GeneratedThorax {
  protected:
-  static void SetUpTestSuite() { model_ = CompileShipped("thorax-muscle"); }
+  static void SetUpTestSuite() { model_ = CompileShipped("thorax"); }
 
   static Curves Run(const v1::Parameters& parameters, double seconds) {
     Curves curves;

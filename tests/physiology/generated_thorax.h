@@ -40,7 +40,7 @@ inline double DomeDescent(const physiology::Subject& subject, const State& state
 // A fixture whose model all tests of a suite share.
 class GeneratedThorax : public testing::Test {
  protected:
-  static void SetUpTestSuite() { model_ = CompileShipped("thorax"); }
+  static void SetUpTestSuite() { model_ = CompileShipped("thorax-thesis"); }
   static void TearDownTestSuite() { model_.reset(); }
 
   // Returns the model's parameters with those of a preset merged in.

@@ -18,7 +18,7 @@ constexpr char kPython[] = "/usr/bin/python3";  // Debian's
 
 class Measures : public testing::Test {
  protected:
-  static void SetUpTestSuite() { model_ = CompileShipped("thorax-muscle", 10); }
+  static void SetUpTestSuite() { model_ = CompileShipped("thorax", 10); }
   static void TearDownTestSuite() { model_.reset(); }
 
   static Points RestingSheet(const Subject& subject) {
@@ -34,7 +34,7 @@ TEST_F(Measures, AgreeWithAScriptThatReadsExportedVertices) {
   }
   const std::string motion = testing::TempDir() + "phrenic_columns.msh", out = testing::TempDir() + "phrenic_columns";
   const std::string run = PHRENIC_BINARY_DIR
-      "/phrenic run thorax-muscle --resolution 10 --preset quiet --seconds 8 --fps 10 --body diaphragm "
+      "/phrenic run thorax --resolution 10 --preset quiet --seconds 8 --fps 10 --body diaphragm "
       "--body diaphragm-middle --body chest-wall --export ";
   ASSERT_EQ(std::system((run + motion + " >" + out + " 2>&1").c_str()), 0);
   const std::string script = std::string(kPython) + " " PHRENIC_SOURCE_DIR "/tests/physiology/columns_from_files.py ";

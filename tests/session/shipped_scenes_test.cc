@@ -29,7 +29,7 @@ TEST_P(ShippedScene, RunsAndRepeats) {
   Models models(SceneCatalogue({kScenes}), data ? kData : "", 1);
   v1::SceneSource source;
   source.set_name(GetParam());
-  if (GetParam() == "thorax") source.set_resolution_mm(16);
+  if (GetParam() == "thorax-thesis") source.set_resolution_mm(16);
   const auto model = models.Get(source);
   ASSERT_TRUE(model.ok()) << model.status();
   const v1::Parameters& parameters = (*model)->parameters;

@@ -54,7 +54,7 @@ Frames RunScene(const std::string& scene, const std::string& data, double resolu
 }
 
 const Frames& Thorax() {
-  static const Frames frames = RunScene("thorax", "", 12, 3, 100);
+  static const Frames frames = RunScene("thorax-thesis", "", 12, 3, 100);
   return frames;
 }
 

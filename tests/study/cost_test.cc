@@ -317,7 +317,7 @@ TEST(CostStudy, LeavesOutTheScenesThatNeedThePart) {
 }
 
 TEST(CostParts, AreThoseOfTheScene) {
-  const v1::Scene thorax = SceneFile("thorax");
+  const v1::Scene thorax = SceneFile("thorax-thesis");
   EXPECT_THAT(PartsOf(thorax), ElementsAre("ribs", "springs", "friction", "attachments", "muscles", "lungs", "links"));
   EXPECT_TRUE(PartsOf({}).empty());
   for (const std::string& part : PartsOf(thorax)) {
@@ -327,7 +327,7 @@ TEST(CostParts, AreThoseOfTheScene) {
 }
 
 TEST(CostParts, WithoutRibsNothingIsDriven) {
-  const v1::Scene scene = Without(SceneFile("thorax"), "ribs");
+  const v1::Scene scene = Without(SceneFile("thorax-thesis"), "ribs");
   for (const v1::Body& body : scene.bodies()) EXPECT_NE(body.role(), v1::ROLE_DRIVEN) << body.name();
 }
 
@@ -378,7 +378,7 @@ TEST(TimedModel, StepsToTheSameState) {
 }
 
 TEST(ThesisTables, AreThoseOfTheCorrespondingModel) {
-  const v1::Scene thorax = SceneFile("thorax"), cube = SceneFile("cube-springs"), sheet = SceneFile("sheet-2d");
+  const v1::Scene thorax = SceneFile("thorax-thesis"), cube = SceneFile("cube-springs"), sheet = SceneFile("sheet-2d");
   EXPECT_EQ(LikeThesisFigure(thorax, 20900, ThesisTrial::kFull)->steps_per_second, 8.13);
   EXPECT_EQ(LikeThesisFigure(thorax, 20900, ThesisTrial::kNoLinks)->steps_per_second, 8.56);
   EXPECT_EQ(LikeThesisFigure(thorax, 16000, ThesisTrial::kNoMuscles)->steps_per_second, 10.93);

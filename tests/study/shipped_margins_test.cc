@@ -32,7 +32,7 @@ TEST_P(ShippedStep, KeepsAMarginOfFivePercent) {
   session::Models models(session::SceneCatalogue({PHRENIC_SCENES_DIR}), found ? data : "", 1);
   v1::SceneSource source;
   source.set_name(GetParam());
-  if (GetParam() == "thorax") source.set_resolution_mm(16);
+  if (GetParam() == "thorax-thesis") source.set_resolution_mm(16);
   const auto model = models.Get(source);
   ASSERT_TRUE(model.ok()) << model.status();
   const Subject subject{.model = *model, .parameters = (*model)->parameters};

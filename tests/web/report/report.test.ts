@@ -254,7 +254,7 @@ describe("the page of physiology", () => {
   const study = {
     ...done,
     result: {
-      scene: "thorax-muscle",
+      scene: "thorax",
       physiology: {
         rows: [
           { breath: "quiet", what: "tidal volume", unit: "l", value: 0.6, verdict: "VERDICT_INSIDE" },
@@ -272,7 +272,7 @@ describe("the page of physiology", () => {
 
   test("DrawsTheCurvesOfTheBreathThatIsChosen", () => {
     show(study);
-    expect(page.querySelector("h1")!.textContent).toBe("Physiology: thorax-muscle");
+    expect(page.querySelector("h1")!.textContent).toBe("Physiology: thorax");
     expect(page.textContent).toContain("1 of 2 values are inside");
     expect(all("figure svg[role=img]").length).toBe(2);
     const [, deep] = all("input[name=breath]") as HTMLInputElement[];
