@@ -18,7 +18,7 @@
 namespace phrenic::anatomy {
 namespace {
 
-// Limits of "insertion" [mm].
+// Limits of "insertion" and of the hiatus [mm].
 constexpr double kCrusFixedBelow = 75;
 constexpr double kAortaHalfWidth = 15, kAortaTop = 127, kAortaFront = -30;
 
