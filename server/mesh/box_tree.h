@@ -44,21 +44,21 @@ class BoxTree {
   // squared distance that may shrink meanwhile; the nearer boxes first. Requires: the boxes are fitted.
   template <typename Limit, typename Visitor>
   void Visit(const Boxes& boxes, const Eigen::Vector3d& point, const Limit& limit, const Visitor& visit) const {
-    std::array<int, kMaxStack> stack;
+    std::array<Near, kMaxStack> stack;
     int depth = 0;
-    stack[depth++] = 0;
+    stack[depth++] = {0, boxes[0].squaredExteriorDistance(point)};
     while (depth > 0) {
-      const int n = stack[--depth];
-      if (boxes[n].squaredExteriorDistance(point) > limit()) continue;
-      const Node& node = nodes_[n];
+      const Near near = stack[--depth];
+      if (near.squared > limit()) continue;
+      const Node& node = nodes_[near.node];
       if (node.left < 0) {
         for (int i = node.first; i < node.first + node.count; ++i) visit(i);
         continue;
       }
-      const double left = boxes[node.left].squaredExteriorDistance(point);
-      const double right = boxes[node.left + 1].squaredExteriorDistance(point);
-      stack[depth++] = left <= right ? node.left + 1 : node.left;
-      stack[depth++] = left <= right ? node.left : node.left + 1;
+      const Near left = {node.left, boxes[node.left].squaredExteriorDistance(point)};
+      const Near right = {node.left + 1, boxes[node.left + 1].squaredExteriorDistance(point)};
+      stack[depth++] = left.squared <= right.squared ? right : left;
+      stack[depth++] = left.squared <= right.squared ? left : right;
     }
   }
 
@@ -68,6 +68,11 @@ class BoxTree {
   struct Node {
     int first, count;  // the range of its items in order_
     int left = -1;     // its children are left and left + 1; -1 for a leaf
+  };
+  // A node to visit, and the squared distance of its box [m^2].
+  struct Near {
+    int node;
+    double squared;
   };
   void Split(int node, const Points& centres, int leaf);
 

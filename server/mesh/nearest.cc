@@ -7,7 +7,7 @@
 namespace phrenic {
 namespace {
 
-constexpr int kLeafVertices = 16;  // a linear scan of so many is faster than descending further
+constexpr int kLeafVertices = 32;  // a linear scan of so many is faster than descending further
 
 // Returns a slightly larger squared distance: boxes round theirs, and a vertex in a box that ties is not to be missed.
 double WithMargin(double squared) { return squared * (1 + 1e-9) + std::numeric_limits<double>::min(); }
