@@ -50,7 +50,8 @@ CommandFunction SetUpStep(CLI::App& command);
 CommandFunction SetUpPause(CLI::App& command);
 CommandFunction SetUpReset(CLI::App& command);
 CommandFunction SetUpDelete(CLI::App& command);
-// control.cc: ControlService. The token of control is kept in the user's state folder (files/tokens.h).
+// control.cc: ControlService. `take` keeps the token of control in the user's files (files/tokens.h); the others send
+// it and fail if there is none.
 CommandFunction SetUpControlShow(CLI::App& command);
 CommandFunction SetUpControlTake(CLI::App& command);
 CommandFunction SetUpControlHand(CLI::App& command);
