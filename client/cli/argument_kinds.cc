@@ -50,6 +50,7 @@ constexpr KindRow kKindRows[] = {
     {"physiology --check", Kind::kOther, "", ""},
     {"--check", Kind::kOther, "MEASURE=LIMIT", ""},
     {"--codec", Kind::kOther, "CODEC", ""},
+    {"--vary", Kind::kOther, "NAME[:LOW:HIGH]", ""},
     {"--repair", Kind::kChoice, "REPAIR,...", "weld slivers fins orient all"},
     {"--labels", Kind::kFile, "NAME or FILE", ""},
     {"patient --out", Kind::kFolder, "DIR", ""},

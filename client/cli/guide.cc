@@ -19,7 +19,7 @@ constexpr NamedText kExitCodes[] = {
     {"1", "failure"},
     {"2", "invalid command line or settings file"},
     {"3", "no server"},
-    {"4", "a limit is exceeded, or a replay ends in another state"},
+    {"4", "a limit is exceeded, a replay ends in another state, or a calibration reaches no such breath"},
     {"5", "not permitted: another user controls the session, or the account lacks the right"},
     {"130", "interrupted"},
 };
@@ -56,6 +56,7 @@ constexpr Synonym kSynonyms[] = {
     {"version", "--version"}, {"diff", "compare"},       {"distance", "compare"},
     {"clone", "fork"},        {"copy", "fork"},          {"simulate", "run"},
     {"parameters", "set"},    {"breathe", "physiology"}, {"completions", "completion"},
+    {"fit", "calibrate"},     {"tune", "calibrate"},
 };
 
 }  // namespace

@@ -52,6 +52,7 @@ double LungBackOverFront(const Recording& r, const Recording&);
 
 double TidalVolume(const Recording& r, const Recording&);               // greatest minus least [l]
 double InspiredVolume(const Recording& r, const Recording&);            // greatest minus that at the beginning [l]
+double VolumeAtRest(const Recording& r, const Recording&);              // at the beginning [l]
 double VolumeAbove(const Recording& r, const Recording& other);         // at the beginning, over the other's [l]
 double TidalVolumeLost(const Recording& r, const Recording& other);     // of the other's [%]
 double AbdominalShare(const Recording& r, const Recording&);            // of the volume breathed in [%]

@@ -46,8 +46,9 @@ double TidalVolume(const Recording& r, const Recording&) {
 double InspiredVolume(const Recording& r, const Recording&) {
   return kLitres * (Greatest(r, kVolume) - r.of[kVolume].front());
 }
+double VolumeAtRest(const Recording& r, const Recording&) { return kLitres * r.of[kVolume].front(); }
 double VolumeAbove(const Recording& r, const Recording& other) {
-  return kLitres * (r.of[kVolume].front() - other.of[kVolume].front());
+  return VolumeAtRest(r, r) - VolumeAtRest(other, other);
 }
 double TidalVolumeLost(const Recording& r, const Recording& other) {
   return 100 * (1 - TidalVolume(r, r) / TidalVolume(other, other));

@@ -18,8 +18,11 @@ constexpr int kMoments = 10;              // of a breath, at which flaws are loo
 
 class Recorder {
  public:
-  Recorder(const Subject& subject, const v1::Parameters& parameters, Recording& recording)
-      : subject_(subject), parameters_(parameters), recording_(recording) {
+  Recorder(const Subject& subject, const v1::Parameters& parameters, FlawSearch search, Recording& recording)
+      : subject_(subject),
+        parameters_(parameters),
+        recording_(recording),
+        next_moment_(search == FlawSearch::kNever ? HUGE_VAL : 0) {
     recording_.flaws.fill(kNone);
     recording_.flaw_time.fill(0);
   }
@@ -75,7 +78,7 @@ class Recorder {
   const Subject& subject_;
   const v1::Parameters& parameters_;
   Recording& recording_;
-  double fullest_ = 0, next_moment_ = 0;
+  double fullest_ = 0, next_moment_;
 };
 
 // The breaths before the measured one.
@@ -100,11 +103,11 @@ absl::StatusOr<std::unique_ptr<const Subject>> Subject::Of(const Model& model) {
 }
 
 absl::StatusOr<Recording> Record(const Subject& subject, const std::string& breath, const v1::Parameters& parameters,
-                                 absl::FunctionRef<bool(double)> progress) {
+                                 absl::FunctionRef<bool(double)> progress, FlawSearch search) {
   Recording recording;
   recording.subject = &subject;
   recording.breath = breath;
-  Recorder recorder(subject, parameters, recording);
+  Recorder recorder(subject, parameters, search, recording);
   Workspace work = subject.model.MakeWorkspace();
   State state = subject.model.InitialState();
   const double length = parameters.breath_length(), interval = std::max(kSampleInterval, length / kMostSamples);

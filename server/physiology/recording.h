@@ -61,11 +61,16 @@ struct Recording {
   std::string problem;                        // why the breath could not be finished; empty if it was
 };
 
+// Whether crossings, pierced sheets and hollows are looked for. Without, flaws are kNone, and a breath takes half as
+// long.
+enum class FlawSearch { kAtTenMoments, kNever };
+
 // Breathes with the parameters, every field set. Before the measured breath come those that let it settle: one, and at
 // least 4 s, if the scene has pressures. CANCELLED if `progress`, which gets 0 to 1, returns false. A breath that
 // diverges has a problem.
 absl::StatusOr<Recording> Record(const Subject& subject, const std::string& breath, const v1::Parameters& parameters,
-                                 absl::FunctionRef<bool(double)> progress);
+                                 absl::FunctionRef<bool(double)> progress,
+                                 FlawSearch search = FlawSearch::kAtTenMoments);
 
 }  // namespace phrenic::physiology
 
