@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -17,7 +18,7 @@
 namespace phrenic::anatomy {
 namespace {
 
-// Limits of "insertion" [mm].
+// Limits of "insertion" and of the hiatus [mm].
 constexpr double kCrusFixedBelow = 75;
 constexpr double kAortaHalfWidth = 15, kAortaTop = 127, kAortaFront = -30;
 
@@ -33,7 +34,7 @@ Mesh OpenMesh(const Sheet& sheet) {
   return mesh;
 }
 
-// Requires: the openings are closed, so that the border is the rim.
+// Requires: the openings and the hiatus are closed, so that the border is the rim.
 void NameRegions(const Sheet& sheet, Mesh& mesh) {
   for (int i = 0; i < static_cast<int>(sheet.points.size()); ++i) {
     const Eigen::Vector2d& p = sheet.plane[i];
@@ -44,9 +45,7 @@ void NameRegions(const Sheet& sheet, Mesh& mesh) {
     if ((right || left) && sheet.points[i].z() < kCrusFixedBelow) mesh.regions["insertion"].push_back(i);
   }
   mesh.regions["rim"] = BoundaryVertices(mesh.triangles);
-  for (const int i : mesh.regions["rim"]) {
-    if (!BridgesAorta(sheet.points[i])) mesh.regions["insertion"].push_back(i);
-  }
+  for (const int i : mesh.regions["rim"]) mesh.regions["insertion"].push_back(i);
 }
 
 // Closes an opening with a fan around a new vertex at the loop's centroid.
@@ -64,6 +63,40 @@ void Close(const Sheet& sheet, const std::vector<int>& loop, const std::string& 
   }
   mesh.regions[region] = loop;
   for (const std::string& name : {region, tissue, std::string("hubs")}) mesh.regions[name].push_back(hub);
+}
+
+// Returns the border of the hiatus from one crus over its top to the other, in the winding of the triangles.
+std::vector<int> HiatusBorder(const Sheet& sheet) {
+  std::unordered_map<int, int> next;
+  for (const auto& [a, b] : BoundaryEdges(sheet)) next[a] = b;
+  const auto bridges = [&](int i) { return BridgesAorta(sheet.points[i]); };
+  int first = sheet.loops[kRimLoop].front();
+  while (bridges(first) || !bridges(next.at(first))) first = next.at(first);
+  std::vector<int> border = {first};
+  do {
+    border.push_back(next.at(border.back()));
+  } while (bridges(border.back()));
+  return border;
+}
+
+// Closes the hiatus with a strip of triangles from one crus to the other, which has no vertices of its own. The next
+// triangle is the one with the shorter new edge.
+void CloseHiatus(const Sheet& sheet, Mesh& mesh) {
+  const std::vector<int> border = HiatusBorder(sheet);
+  const auto length = [&](size_t i, size_t j) { return (sheet.points[border[i]] - sheet.points[border[j]]).norm(); };
+  Eigen::Index t = mesh.triangles.cols();
+  mesh.triangles.conservativeResize(3, t + static_cast<Eigen::Index>(border.size()) - 2);
+  size_t i = 0, j = border.size() - 1;
+  while (j - i > 1) {
+    if (length(i + 1, j) < length(i, j - 1)) {
+      mesh.triangles.col(t++) << border[i + 1], border[i], border[j];
+      ++i;
+    } else {
+      mesh.triangles.col(t++) << border[j], border[j - 1], border[i];
+      --j;
+    }
+  }
+  mesh.regions["aortic-hiatus"] = border;
 }
 
 // Renumbers vertices so that neighbours are close in memory, and sorts triangles by their lowest vertex.
@@ -89,6 +122,7 @@ Mesh MiddleSheet(double edge_length) {
   Mesh mesh = OpenMesh(sheet);
   Close(sheet, sheet.loops[kCavalLoop], "caval-opening", "tendon", mesh);
   Close(sheet, sheet.loops[kOesophagealLoop], "oesophageal-opening", "muscle", mesh);
+  CloseHiatus(sheet, mesh);
   NameRegions(sheet, mesh);
   return Renumbered(std::move(mesh));
 }

@@ -66,11 +66,16 @@ Fibres::Fibres(const Mesh& rest) : rest_(rest) {
   const std::string from = rest.regions.count("insertion") > 0 ? "insertion" : "rim";
   if (rest.regions.count(from) == 0 || rest.regions.count("tendon") == 0) return;
   const std::vector<bool> tendon = Marked(rest, "tendon");
-  const std::vector<bool> gullet = Marked(rest, "oesophageal-opening"), caval = Marked(rest, "caval-opening");
+  const std::vector<bool> openings[] = {Marked(rest, "oesophageal-opening"), Marked(rest, "caval-opening"),
+                                        Marked(rest, "aortic-hiatus")};
+  const auto closes = [&](const Eigen::Vector3i& corners) {
+    return std::any_of(std::begin(openings), std::end(openings),
+                       [&](const auto& opening) { return CountOf(opening, corners) == 3; });
+  };
   const auto u = HarmonicBetween(rest, Marked(rest, from), tendon);
   if (!u.ok()) return;
   for (const Eigen::Vector3i corners : rest.triangles.colwise()) {
-    if (CountOf(gullet, corners) == 3 || CountOf(caval, corners) == 3) continue;
+    if (closes(corners)) continue;
     if (CountOf(tendon, corners) >= 2) {
       tendon_.push_back(corners);
     } else {
