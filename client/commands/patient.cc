@@ -37,7 +37,7 @@ struct PatientOptions {
 
 // Returns the generated thorax's scene, the template of patients' scenes.
 absl::StatusOr<v1::Scene> ReadTemplate() {
-  const std::string path = Installed("scenes", PHRENIC_SCENES_DIR) + "/thorax-thesis.textproto";
+  const std::string path = Installed("scenes", PHRENIC_SCENES_DIR) + "/thorax.textproto";
   const absl::StatusOr<std::string> text = ReadWhole(path, "the template of patients' scenes");
   if (!text.ok()) return text.status();
   return schema::ParseScene(path, *text);
