@@ -7,10 +7,10 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <queue>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/anatomy/diaphragm_shape.h"
 #include "server/anatomy/double_layer.h"
 #include "server/anatomy/plane_region.h"
 #include "server/imaging/diaphragm_rim.h"
@@ -48,29 +48,14 @@ Eigen::Vector3d NormalOf(const anatomy::SheetDomain& sheet, const Eigen::Vector2
   return (sheet.map(p + ex) - sheet.map(p - ex)).cross(sheet.map(p + ey) - sheet.map(p - ey)).normalized();
 }
 
-// Returns each vertex' distance from the rim along edges (Dijkstra) [mm].
-std::vector<double> DistanceFromRim(const Sheet& sheet) {
-  std::vector<std::vector<int>> neighbours(sheet.points.size());
-  for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      neighbours[sheet.triangles(k, t)].push_back(sheet.triangles((k + 1) % 3, t));
-      neighbours[sheet.triangles((k + 1) % 3, t)].push_back(sheet.triangles(k, t));
-    }
+// Returns how far each vertex is outside of the tendon's leaves, in disc coordinates; infinity on the wall.
+std::vector<double> OutsideTendon(const Sheet& sheet, const FittedCage& cage) {
+  std::vector<double> outside;
+  for (const Eigen::Vector3d& point : sheet.points) {
+    outside.push_back(cage.OnWall(point) ? std::numeric_limits<double>::infinity()
+                                         : anatomy::OutsideLeaves(cage.DiscCoordinates(point)));
   }
-  using Entry = std::pair<double, int>;  // distance, vertex
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  std::vector<double> distance(sheet.points.size(), std::numeric_limits<double>::infinity());
-  for (const int i : sheet.loops[0]) distance[i] = 0, queue.emplace(0, i);
-  while (!queue.empty()) {
-    const auto [so_far, i] = queue.top();
-    queue.pop();
-    if (so_far > distance[i]) continue;
-    for (const int j : neighbours[i]) {
-      const double length = so_far + (sheet.points[j] - sheet.points[i]).norm();
-      if (length < distance[j]) distance[j] = length, queue.emplace(length, j);
-    }
-  }
-  return distance;
+  return outside;
 }
 
 double TriangleArea(const Sheet& sheet, Eigen::Index t) {
@@ -78,22 +63,23 @@ double TriangleArea(const Sheet& sheet, Eigen::Index t) {
   return (b - a).cross(sheet.points[sheet.triangles(2, t)] - a).norm() / 2;
 }
 
-// Returns the distance from the rim beyond which `share` of the area lies.
-double TendonDistance(const Sheet& sheet, const std::vector<double>& distance, double share) {
-  std::vector<std::pair<double, double>> triangles;  // distance, area
+// Returns the bound of `outside` below which `share` of the area lies.
+double TendonBound(const Sheet& sheet, const std::vector<double>& outside, double share) {
+  std::vector<std::pair<double, double>> triangles;  // outside, area
   double area = 0;
   for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
     const Eigen::Vector3i v = sheet.triangles.col(t);
-    triangles.emplace_back(std::min({distance[v[0]], distance[v[1]], distance[v[2]]}), TriangleArea(sheet, t));
+    triangles.emplace_back(std::max({outside[v[0]], outside[v[1]], outside[v[2]]}), TriangleArea(sheet, t));
     area += triangles.back().second;
   }
-  std::sort(triangles.rbegin(), triangles.rend());
-  double taken = 0;
-  for (const auto& [from_rim, triangle_area] : triangles) {
+  std::sort(triangles.begin(), triangles.end());
+  double taken = 0, bound = 0;
+  for (const auto& [at, triangle_area] : triangles) {
+    if (std::isinf(at) || taken >= share * area) break;
     taken += triangle_area;
-    if (taken >= share * area) return from_rim;
+    bound = at;
   }
-  return 0;
+  return bound;
 }
 
 using Regions = std::map<std::string, std::vector<int>>;
@@ -106,19 +92,21 @@ bool BridgesAorta(const CageFrame& frame, const Eigen::Vector3d& point) {
 }
 
 // Returns "tendon", "muscle", "crus-right", "crus-left", "rim" and "insertion" as vertices of the sheet.
-Regions RegionsOf(const Sheet& sheet, const CageFrame& frame, double tendon_share) {
-  const std::vector<double> distance = DistanceFromRim(sheet);
-  const double tendon = TendonDistance(sheet, distance, tendon_share);
+Regions RegionsOf(const Sheet& sheet, const CageFrame& frame, const FittedCage& cage, double tendon_share) {
+  const std::vector<double> outside = OutsideTendon(sheet, cage);
+  const double tendon = TendonBound(sheet, outside, tendon_share);
+  std::vector<bool> on_rim(sheet.points.size(), false);
+  for (const int i : sheet.loops[0]) on_rim[i] = true;
   Regions regions;
   for (int i = 0; i < static_cast<int>(sheet.points.size()); ++i) {
     const Eigen::Vector3d& point = sheet.points[i];
     const bool right = InCrus(frame, point, v1::SIDE_RIGHT), left = InCrus(frame, point, v1::SIDE_LEFT);
-    regions[distance[i] >= tendon ? "tendon" : "muscle"].push_back(i);
+    regions[outside[i] <= tendon ? "tendon" : "muscle"].push_back(i);
     if (right) regions["crus-right"].push_back(i);
     if (left) regions["crus-left"].push_back(i);
-    if (distance[i] == 0) regions["rim"].push_back(i);
+    if (on_rim[i]) regions["rim"].push_back(i);
     const bool fixed_crus = (right || left) && point.z() < frame.CrusFixedBelow();
-    if (fixed_crus || (distance[i] == 0 && !BridgesAorta(frame, point))) regions["insertion"].push_back(i);
+    if (fixed_crus || (on_rim[i] && !BridgesAorta(frame, point))) regions["insertion"].push_back(i);
   }
   return regions;
 }
@@ -267,8 +255,8 @@ absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, cons
   DerivedDiaphragm derived;
   derived.mesh = anatomy::DoubleLayer(*seen, [&domain](const Eigen::Vector2d& p) { return NormalOf(domain, p); });
   derived.mesh.vertices *= kMillimetre;
-  AddRegions(RegionsOf(*seen, frame, options.tendon_share), derived.mesh);
-  derived.middle = MiddleLayer(*middle, RegionsOf(*middle, frame, options.tendon_share));
+  AddRegions(RegionsOf(*seen, frame, cage, options.tendon_share), derived.mesh);
+  derived.middle = MiddleLayer(*middle, RegionsOf(*middle, frame, cage, options.tendon_share));
   derived.report = ReportOf(*seen, smooth);
   return derived;
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kColumns = 144;
 constexpr double kRowHeight = 4;                      // [mm]
-constexpr double kOffCage = 3;                        // of the wall from a bone's inner face [mm]
+constexpr double kOffCage = 3.5;                      // of the wall from a bone's inner face [mm]
 constexpr double kFurthestBone = 260;                     // bone [mm]
 constexpr double kNarrowest = 8;                      // [mm]
 constexpr double kStiffness = 4, kUpright = 0.02;     // bending and tension, relative to a weight of 1 a ray
@@ -140,6 +140,22 @@ Eigen::Vector3d FittedCage::Inside(const Eigen::Vector3d& point) const {
   const double radius = wall + DrawnGap(polar.radius - wall);
   const Eigen::Vector2d moved = polar.axis + radius / polar.radius * (point.head<2>() - polar.axis);
   return {moved.x(), moved.y(), point.z()};
+}
+
+Eigen::Vector2d FittedCage::DiscCoordinates(const Eigen::Vector3d& point) const {
+  const Eigen::Vector2d axis = frame_.Axis(point.z());
+  Eigen::AlignedBox2d box;
+  for (int i = 0; i < kColumns; ++i) {
+    const double azimuth = kFullTurn * i / kColumns;
+    box.extend(axis + Radius(azimuth, point.z()) * Eigen::Vector2d(std::sin(azimuth), -std::cos(azimuth)));
+  }
+  return 2 * (point.head<2>() - box.center()).cwiseQuotient(box.sizes());
+}
+
+bool FittedCage::OnWall(const Eigen::Vector3d& point) const {
+  constexpr double kTouches = 1;  // [mm]
+  const Polar polar = PolarOf(point);
+  return polar.radius > Radius(polar.azimuth, point.z()) - kTouches;
 }
 
 Mesh FittedCage::Tube() const {

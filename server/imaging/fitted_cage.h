@@ -11,7 +11,7 @@ namespace phrenic::imaging {
 
 // A radius R(azimuth, z) about the frame's axis (CageFrame::Axis), from the lower end of L3 to the top of the cage,
 // on a grid of 144 azimuths and heights 4 mm apart. Horizontal rays find the first voxel of rib, cartilage, sternum or
-// vertebra; R is the thin plate that stays 3 mm inside of them: in ten rounds of reweighting, a bone that is nearer to
+// vertebra; R is the thin plate that stays 3.5 mm inside of them: in ten rounds of reweighting, a bone that is nearer to
 // the axis than the plate has 100 times the weight of one further out, so that R passes under the ribs and bridges the
 // spaces between them. Lengths in millimetres, frame LPS. Immutable, thread-safe.
 class FittedCage {
@@ -25,6 +25,11 @@ class FittedCage {
   // Returns the point moved along its radius: onto the wall if it is outside of it or at most 1 mm inside, and by ever
   // less further in, up to 5 mm. Elsewhere the point itself.
   Eigen::Vector3d Inside(const Eigen::Vector3d& point) const;
+  // Returns the disc coordinates of a point, as anatomy::CageSection: x and y within the width and the depth of the
+  // wall at its height, from -1 to 1.
+  Eigen::Vector2d DiscCoordinates(const Eigen::Vector3d& point) const;
+  // True if the point is on the wall, to a millimetre.
+  bool OnWall(const Eigen::Vector3d& point) const;
   // Returns the wall as a tube, open below and above: a grid like anatomy::InnerCage, triangles facing outwards.
   Mesh Tube() const;
 

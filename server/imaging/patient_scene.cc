@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/anatomy/inner_cage.h"
+#include "server/anatomy/rib.h"
 #include "server/imaging/rib_axis.h"
 #include "server/mesh/units.h"
 #include "server/schema/schema.h"
@@ -77,13 +78,21 @@ void KeepKnown(const std::set<std::string>& layers, Names* names) {
                names->end());
 }
 
+// Returns the angle of an axis from the midsagittal plane [rad]; 0 points backwards.
+double FromMidplane(const Eigen::Vector3d& axis) { return std::atan2(std::abs(axis.x()), axis.y()); }
+
+// Returns how much further from the midsagittal plane the neck of a rib is than that of the generated one [rad].
+double NeckTurn(const PatientBody& rib, double scale) {
+  const anatomy::Curve path = anatomy::LeftRibPath(rib.anatomy.number());
+  return FromMidplane(FindRibNeck(rib.mesh, scale).Axis()) - FromMidplane(path[2] - path[0]);
+}
+
 // A motion of its own for each rib: the language's end states go by number, and the two sides differ.
 void AddRib(const PatientBody& rib, const v1::Ribs& pattern, double scale, v1::Scene& scene) {
   for (const v1::RibEndState& usual : pattern.end_states()) {
     if (usual.number() != rib.anatomy.number()) continue;
-    const Eigen::Vector3d axis = FindRibNeck(rib.mesh, scale).Axis();
     const double angle = std::hypot(usual.pump_degrees(), usual.bucket_degrees());
-    const double level = std::max(1e-6, std::hypot(axis.x(), axis.y()));
+    const double turned = std::atan2(usual.pump_degrees(), usual.bucket_degrees()) + NeckTurn(rib, scale);
     v1::Motion& motion = *scene.add_motions();
     motion.set_name(absl::StrCat("turn:", rib.name));
     v1::Ribs& ribs = *motion.mutable_ribs() = pattern;
@@ -92,8 +101,8 @@ void AddRib(const PatientBody& rib, const v1::Ribs& pattern, double scale, v1::S
     ribs.add_bodies(rib.name);
     v1::RibEndState& end = *ribs.add_end_states();
     end.set_number(usual.number());
-    end.set_pump_degrees(angle * std::abs(axis.x()) / level);
-    end.set_bucket_degrees(angle * axis.y() / level);
+    end.set_pump_degrees(angle * std::sin(turned));
+    end.set_bucket_degrees(angle * std::cos(turned));
   }
 }
 

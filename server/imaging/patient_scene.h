@@ -17,8 +17,9 @@ inline constexpr char kMiddleBody[] = "diaphragm-middle", kWallBody[] = "chest-w
 double ScaleOf(const CageFrame& frame);
 
 // Returns the pattern, the scene `thorax`, with the patient's bodies in its layers. Bodies of the pattern with a
-// patient's body of the same name keep all but their shape. Each rib rotates about the horizontal component of its own
-// neck axis by the pattern's angle for its number (pump and bucket rotation), moved by the two coordinates of the cage
+// patient's body of the same name keep all but their shape. Each rib rotates by the pattern's angle for its
+// number, about the pattern's axis turned in the horizontal plane as far as the neck differs from that of the generated
+// rib, moved by the two coordinates of the cage
 // that all share; cartilages are skinned to ribs and sternum, the wall, the lungs and the seen diaphragm as in the
 // pattern. Muscle and pressures are those of the pattern; volumes, compliances and inverse resistances are multiplied
 // by the volume inside the wall relative to the generated one, the simulated mass by the square of ScaleOf. Elements of
