@@ -194,10 +194,22 @@ void ScaleAbdomen(double volume, v1::Abdomen& abdomen) {
   abdomen.set_resistance(abdomen.resistance() / volume);
 }
 
-// The patient's mesh has no openings: no muscle is passive tissue.
-void AdaptForces(double volume, v1::Scene& scene) {
+// Scales tensions with the size, so that the same pressures bend the sheet alike. The patient's mesh has no openings: no
+// muscle is passive tissue.
+void ScaleMuscle(double size, v1::Muscle& muscle) {
+  schema::FillDefaults(&muscle);
+  muscle.clear_passive_regions();
+  muscle.set_thickness(size * muscle.thickness());
+  muscle.set_resting_tension(size * muscle.resting_tension());
+  muscle.set_resting_tension_across(size * muscle.resting_tension_across());
+  muscle.set_passive_stiffness(size * muscle.passive_stiffness());
+  muscle.set_tendon_tension(size * muscle.tendon_tension());
+  muscle.set_tendon_stiffness(size * muscle.tendon_stiffness());
+}
+
+void AdaptForces(double size, double volume, v1::Scene& scene) {
   for (v1::Force& force : *scene.mutable_forces()) {
-    if (force.has_muscle()) force.mutable_muscle()->clear_passive_regions();
+    if (force.has_muscle()) ScaleMuscle(size, *force.mutable_muscle());
     if (force.has_thorax_pressures()) {
       ScaleLungs(volume, *force.mutable_thorax_pressures()->mutable_lungs());
       ScaleAbdomen(volume, *force.mutable_thorax_pressures()->mutable_abdomen());
@@ -251,7 +263,7 @@ v1::Scene PatientScene(const v1::Scene& pattern, const std::vector<PatientBody>&
               shown.end());
   AddBodies(bodies, pattern, ScaleOf(frame), name, scene);
   AddMotions(pattern, bodies, known, frame, scene);
-  AdaptForces(RelativeVolume(bodies), scene);
+  AdaptForces(ScaleOf(frame), RelativeVolume(bodies), scene);
   AddProbes(bodies, scene);
   return scene;
 }

@@ -21,7 +21,8 @@ double ScaleOf(const CageFrame& frame);
 // number, about the pattern's axis turned in the horizontal plane as far as the neck differs from that of the generated
 // rib, moved by the two coordinates of the cage
 // that all share; cartilages are skinned to ribs and sternum, the wall, the lungs and the seen diaphragm as in the
-// pattern. Muscle and pressures are those of the pattern; volumes, compliances and inverse resistances are multiplied
+// pattern. Pressures are those of the pattern; the muscle's thickness,
+// tensions and stiffnesses are multiplied by ScaleOf; volumes, compliances and inverse resistances are multiplied
 // by the volume inside the wall relative to the generated one, the simulated mass by the square of ScaleOf. Elements of
 // layers that the patient does not have are left out.
 v1::Scene PatientScene(const v1::Scene& pattern, const std::vector<PatientBody>& bodies, const CageFrame& frame,
