@@ -30,7 +30,7 @@ struct PatientOptions {
   std::string out, name = "patient";
   double edge_length = 4;  // [mm]
   int vertices = 20000;
-  double tendon_share = 0.22;
+  double tendon_share = 0.17;
   bool serve = false;
   std::string web = "127.0.0.1:8080";
 };

@@ -15,8 +15,9 @@ constexpr double kRowHeight = 4;                      // [mm]
 constexpr double kOffCage = 3.5;                      // of the wall from a bone's inner face [mm]
 constexpr double kFurthestBone = 260;                     // bone [mm]
 constexpr double kNarrowest = 8;                      // [mm]
-constexpr double kStiffness = 4, kUpright = 0.02;     // bending and tension, relative to a weight of 1 a ray
-constexpr double kFurtherOut = 0.01;                  // weight of a bone that is further out than the wall
+constexpr double kStiffness = 1, kUpright = 0.02;     // bending and tension, relative to a weight of 1 a ray
+constexpr double kNearer = 10;                        // weight of a bone that is nearer to the axis than the wall
+constexpr double kFurtherOut = 0.3;                   // weight of a bone that is further out than the wall
 constexpr double kOntoWall = 1, kFreeFromWall = 5;    // distances from the wall [mm]
 constexpr double kFullTurn = 2 * std::numbers::pi;
 
@@ -74,7 +75,7 @@ Eigen::VectorXd FitRadius(const PlateGrid& grid, const Eigen::VectorXd& bones) {
   for (int round = 0; round < kRounds; ++round) {
     radius = plate.Fit(weights, observed);
     for (int i = 0; i < grid.nodes(); ++i) {
-      if (std::isfinite(bones[i])) weights[i] = radius[i] > observed[i] ? 1 : kFurtherOut;
+      if (std::isfinite(bones[i])) weights[i] = radius[i] > observed[i] ? kNearer : kFurtherOut;
     }
   }
   return radius.cwiseMax(kNarrowest);

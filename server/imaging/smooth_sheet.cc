@@ -9,7 +9,7 @@
 namespace phrenic::imaging {
 namespace {
 
-constexpr double kBending = 8;  // b, relative to a weight of 1 per ray
+constexpr double kBending = 4;  // b, relative to a weight of 1 per ray
 constexpr double kOff = 6;      // scale of the robust weight [mm]
 constexpr double kAgrees = 8;   // maximum residual of evidence that SourceAt reports [mm]
 constexpr double kNearby = 10;  // maximum distance of evidence that SourceAt reports [mm]
