@@ -27,9 +27,9 @@ struct DerivedDiaphragm {
 // Fits a smooth sheet (SmoothSheet) to the evidence: domes between the lower faces of lungs and heart and the upper
 // faces of liver, spleen and stomach; the zone of apposition on the fitted cage, and the sheet nowhere outside of it;
 // the crura along the lumbar vertebrae; extrapolated elsewhere. The tendon has the three leaves of the generated one in
-// the patient's cage, evenly grown to `tendon_share` of the area, and none of it is on the wall. No openings. Genus 0. Adds messages to `fallbacks`.
-// FAILED_PRECONDITION, with what to label or check, if less than a twentieth of the sheet was observed, or if the rim
-// does not enclose a sheet that can be meshed.
+// the patient's cage, evenly grown to `tendon_share` of the area, and none of it is on the wall. No openings. Genus 0.
+// Adds messages to `fallbacks`. FAILED_PRECONDITION, with what to label or check, if less than a twentieth of the sheet
+// was observed, or if the rim does not enclose a sheet that can be meshed.
 absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, const std::vector<Part>& parts,
                                                  const CageFrame& frame, const FittedCage& cage,
                                                  const DiaphragmOptions& options, Messages& fallbacks);

@@ -11,14 +11,14 @@ namespace phrenic::imaging {
 namespace {
 
 constexpr int kColumns = 144;
-constexpr double kRowHeight = 4;                      // [mm]
-constexpr double kOffCage = 3.5;                      // of the wall from a bone's inner face [mm]
-constexpr double kFurthestBone = 260;                     // bone [mm]
-constexpr double kNarrowest = 8;                      // [mm]
-constexpr double kStiffness = 1, kUpright = 0.02;     // bending and tension, relative to a weight of 1 a ray
-constexpr double kNearer = 10;                        // weight of a bone that is nearer to the axis than the wall
-constexpr double kFurtherOut = 0.3;                   // weight of a bone that is further out than the wall
-constexpr double kOntoWall = 1, kFreeFromWall = 5;    // distances from the wall [mm]
+constexpr double kRowHeight = 4;                    // [mm]
+constexpr double kOffCage = 3.5;                    // of the wall from a bone's inner face [mm]
+constexpr double kFurthestBone = 260;               // bone [mm]
+constexpr double kNarrowest = 8;                    // [mm]
+constexpr double kStiffness = 1, kUpright = 0.02;   // bending and tension, relative to a weight of 1 a ray
+constexpr double kNearer = 10;                      // weight of a bone that is nearer to the axis than the wall
+constexpr double kFurtherOut = 0.3;                 // weight of a bone that is further out than the wall
+constexpr double kOntoWall = 1, kFreeFromWall = 5;  // distances from the wall [mm]
 constexpr double kFullTurn = 2 * std::numbers::pi;
 
 bool IsBone(const Part& part) {
@@ -34,8 +34,8 @@ std::vector<std::uint8_t> FindBone(const LabelVolume& volume, const std::vector<
     const Mask& mask = part.mask;
     for (std::size_t at = 0; at < mask.inside.size(); ++at) {
       const auto row = static_cast<int>(at / mask.size.x());
-      const Eigen::Vector3i voxel = mask.low + Eigen::Vector3i(static_cast<int>(at % mask.size.x()),
-                                                               row % mask.size.y(), row / mask.size.y());
+      const Eigen::Vector3i voxel =
+          mask.low + Eigen::Vector3i(static_cast<int>(at % mask.size.x()), row % mask.size.y(), row / mask.size.y());
       if (mask.inside[at] == 1 && volume.Contains(voxel)) bone[volume.Index(voxel)] = 1;
     }
   }
@@ -50,7 +50,8 @@ Eigen::VectorXd DistancesOfBone(const LabelVolume& volume, const std::vector<Par
   const double step = volume.Spacing().minCoeff() / 3;
   Eigen::VectorXd distances = Eigen::VectorXd::Constant(grid.nodes(), HUGE_VAL);
   for (int node = 0; node < grid.nodes(); ++node) {
-    const double z = bottom + kRowHeight * (node / grid.columns), azimuth = kFullTurn * (node % grid.columns) / kColumns;
+    const double z = bottom + kRowHeight * (node / grid.columns),
+                 azimuth = kFullTurn * (node % grid.columns) / kColumns;
     const Eigen::Vector2d axis = frame.Axis(z);
     const Ray ray{{axis.x(), axis.y(), z}, {std::sin(azimuth), -std::cos(azimuth), 0}};
     for (double depth = step; depth < kFurthestBone; depth += step) {
@@ -167,7 +168,8 @@ Mesh FittedCage::Tube() const {
   for (int node = 0; node < grid_.nodes(); ++node) {
     const int i = node % kColumns, j = node / kColumns, next = (i + 1) % kColumns;
     const double azimuth = kFullTurn * i / kColumns, z = bottom_ + kRowHeight * j;
-    const Eigen::Vector2d at = frame_.Axis(z) + Radius(azimuth, z) * Eigen::Vector2d(std::sin(azimuth), -std::cos(azimuth));
+    const Eigen::Vector2d at =
+        frame_.Axis(z) + Radius(azimuth, z) * Eigen::Vector2d(std::sin(azimuth), -std::cos(azimuth));
     mesh.vertices.col(node) << at.x(), at.y(), z;
     if (j + 1 == grid_.rows) continue;
     const int right = grid_.Index(next, j), above = grid_.Index(i, j + 1), across = grid_.Index(next, j + 1);

@@ -11,9 +11,9 @@ namespace phrenic::imaging {
 
 // A radius R(azimuth, z) about the frame's axis (CageFrame::Axis), from the lower end of L3 to the top of the cage,
 // on a grid of 144 azimuths and heights 4 mm apart. Horizontal rays find the first voxel of rib, cartilage, sternum or
-// vertebra; R is the thin plate that stays 3.5 mm inside of them: in ten rounds of reweighting, a bone that is nearer to
-// the axis than the plate has 33 times the weight of one further out, so that R passes under the ribs and bridges the
-// spaces between them. Lengths in millimetres, frame LPS. Immutable, thread-safe.
+// vertebra; R is the thin plate that stays 3.5 mm inside of them: in ten rounds of reweighting, a bone that is nearer
+// to the axis than the plate has 33 times the weight of one further out, so that R passes under the ribs and bridges
+// the spaces between them. Lengths in millimetres, frame LPS. Immutable, thread-safe.
 class FittedCage {
  public:
   // Adds a message to `fallbacks` with the share of directions without a bone, and how near to the wall bones are.

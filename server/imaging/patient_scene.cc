@@ -62,8 +62,8 @@ v1::Body BodyOf(const PatientBody& from, const v1::Scene& pattern) {
   return body;
 }
 
-void AddBodies(const std::vector<PatientBody>& bodies, const v1::Scene& pattern, double scale, const std::string& folder,
-               v1::Scene& scene) {
+void AddBodies(const std::vector<PatientBody>& bodies, const v1::Scene& pattern, double scale,
+               const std::string& folder, v1::Scene& scene) {
   scene.clear_bodies();
   for (const PatientBody& from : bodies) {
     v1::Body& body = *scene.add_bodies() = BodyOf(from, pattern);
@@ -194,8 +194,8 @@ void ScaleAbdomen(double volume, v1::Abdomen& abdomen) {
   abdomen.set_resistance(abdomen.resistance() / volume);
 }
 
-// Scales tensions with the size, so that the same pressures bend the sheet alike. The patient's mesh has no openings: no
-// muscle is passive tissue.
+// Scales tensions with the size, so that the same pressures bend the sheet alike. The patient's mesh has no openings:
+// no muscle is passive tissue.
 void ScaleMuscle(double size, v1::Muscle& muscle) {
   schema::FillDefaults(&muscle);
   muscle.clear_passive_regions();
@@ -258,9 +258,9 @@ v1::Scene PatientScene(const v1::Scene& pattern, const std::vector<PatientBody>&
   std::set<std::string> known;
   for (const PatientBody& body : bodies) known.insert({body.name, LayerOf(body.anatomy.structure())});
   auto& shown = *scene.mutable_layers();
-  shown.erase(std::remove_if(shown.begin(), shown.end(),
-                             [&](const v1::Layer& layer) { return !known.contains(layer.name()); }),
-              shown.end());
+  shown.erase(
+      std::remove_if(shown.begin(), shown.end(), [&](const v1::Layer& layer) { return !known.contains(layer.name()); }),
+      shown.end());
   AddBodies(bodies, pattern, ScaleOf(frame), name, scene);
   AddMotions(pattern, bodies, known, frame, scene);
   AdaptForces(ScaleOf(frame), RelativeVolume(bodies), scene);

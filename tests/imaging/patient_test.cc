@@ -222,7 +222,8 @@ TEST_F(Adult, TheSceneHasTheBodiesAndPatientSpecificRibAxes) {
     EXPECT_TRUE(motion.ribs().has_free());
     const v1::RibEndState& end = motion.ribs().end_states(0);
     if (end.number() != 5) continue;
-    EXPECT_NEAR(std::hypot(end.pump_degrees(), end.bucket_degrees()), std::hypot(9, 11.5), 1e-9) << "the pattern's angle";
+    EXPECT_NEAR(std::hypot(end.pump_degrees(), end.bucket_degrees()), std::hypot(9, 11.5), 1e-9)
+        << "the pattern's angle";
     ++turned;
   }
   EXPECT_EQ(turned, 2);
