@@ -9,8 +9,8 @@
 #include "absl/strings/str_join.h"
 #include "client/cli/scene_argument.h"
 #include "client/files/whole_file.h"
+#include "server/crypto/sha256.h"
 #include "server/schema/schema.h"
-#include "server/schema/sha256.h"
 
 namespace phrenic::client {
 namespace {

@@ -1,4 +1,4 @@
-// Shows the session that a call returned.
+// Shows the session that a call returned: the end of every command that creates or changes one. On the main thread.
 #ifndef PHRENIC_CLIENT_COMMANDS_SHOW_SESSION_H_
 #define PHRENIC_CLIENT_COMMANDS_SHOW_SESSION_H_
 
@@ -13,8 +13,12 @@
 
 namespace phrenic::client {
 
-// Prints the session of a response, or the error. `viewer` is the link to the session in the viewer; empty: none.
-// Returns the exit code; kFailed if the session diverged.
+// Prints the session of a response on standard output: a table, or with -o json the response as one document with the
+// proto's field names. `viewer` is the link to the session in the viewer, the field `viewer` of the document; empty:
+// none. Response: any message with a field `session`.
+//
+// Returns the exit code: kOk; kFailed if the session diverged, whose reason is printed with it; what Fail returns if
+// `status` is an error, of which nothing is printed on standard output.
 template <typename Response>
 int ShowSession(const Context& context, const grpc::Status& status, const Response& response,
                 const std::string& viewer = "") {

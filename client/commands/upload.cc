@@ -11,8 +11,8 @@
 #include "client/print/surface_report.h"
 #include "client/terminal/progress.h"
 #include "phrenic/v1/upload.grpc.pb.h"
+#include "server/crypto/sha256.h"
 #include "server/meshio/meshio.h"
-#include "server/schema/sha256.h"
 #include "server/session/uploads.h"
 
 namespace phrenic::client {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "absl/status/status.h"
-#include "server/schema/sha256.h"
+#include "server/crypto/sha256.h"
 
 namespace phrenic::client {
 

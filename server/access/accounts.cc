@@ -5,7 +5,7 @@
 
 #include "absl/time/clock.h"
 #include "server/access/fetch.h"
-#include "server/schema/sha256.h"
+#include "server/crypto/sha256.h"
 
 namespace phrenic::access {
 namespace {

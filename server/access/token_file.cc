@@ -13,9 +13,9 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "server/access/rules.h"
+#include "server/crypto/secret.h"
+#include "server/crypto/sha256.h"
 #include "server/schema/file_bytes.h"
-#include "server/schema/secret.h"
-#include "server/schema/sha256.h"
 
 namespace phrenic::access {
 namespace {

@@ -20,6 +20,7 @@
 
 namespace phrenic::cluster {
 
+// What a server needs to join a cluster, from its settings.
 struct ClusterOptions {
   std::string redis;       // "redis://HOST:PORT" or "rediss://HOST:PORT"; empty: not in a cluster
   std::string advertise;   // "HOST:PORT" at which the other servers reach this server's gRPC
@@ -67,7 +68,8 @@ class Cluster final : public store::Ownership {
   static absl::StatusOr<std::unique_ptr<Cluster>> Join(const ClusterOptions& options);
   ~Cluster() override;
 
-  // Starts to renew leases. Call it before the first Claim. The hooks stay valid until Leave returns.
+  // Starts to renew leases, every 0.7 s. Call it before the first Claim. The hooks stay valid until Leave returns; the
+  // threads of leases and takeovers call them, without a lock.
   void Start(Hooks hooks);
   // Starts to take over sessions without a lease. Call it when this server accepts calls.
   void StartTakeovers();
@@ -77,6 +79,7 @@ class Cluster final : public store::Ownership {
   // Stops renewing leases; those that are left expire. Idempotent.
   void Leave();
 
+  // store::Ownership says what these do; each that asks Redis waits for it for Redis::kTimeout at most.
   absl::StatusOr<std::int64_t> Claim(const std::string& id) override ABSL_LOCKS_EXCLUDED(mutex_, calls_mutex_);
   absl::StatusOr<std::int64_t> Reclaim(const store::SavedSession& saved) override
       ABSL_LOCKS_EXCLUDED(mutex_, calls_mutex_);
@@ -95,8 +98,10 @@ class Cluster final : public store::Ownership {
   // Returns the addresses of the other servers that accept sessions.
   std::vector<std::string> Others() const ABSL_LOCKS_EXCLUDED(mutex_);
   ClusterCounts counts() const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns ClusterOptions::advertise.
   const std::string& address() const { return address_; }
 
+  // Time for which a lease lasts without renewal: that in which sessions of a failed server are taken over.
   static constexpr std::chrono::milliseconds kLease{3000};
   // A lease counts as ended this much early: two clocks differ by less in the time of a lease.
   static constexpr std::chrono::milliseconds kMargin{300};
@@ -121,17 +126,22 @@ class Cluster final : public store::Ownership {
   // Records a lease that was requested at `requested`. Returns its epoch.
   std::int64_t AddLease(const std::string& id, std::int64_t epoch, Clock::time_point requested, bool ready = true)
       ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns the epoch of a session of this server; nullopt if it is not here.
   std::optional<std::int64_t> EpochOf(const std::string& id) const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Runs a script of scripts.h on the connection of calls. The errors of Redis::Run.
   absl::StatusOr<Reply> Run(const char* script, const std::vector<std::string>& arguments)
       ABSL_LOCKS_EXCLUDED(calls_mutex_);
   // Returns the location that is known without Redis; nullopt if Redis must be asked. Sets `expired` if this server has
   // the session but its lease has expired.
   std::optional<Location> LocateFromCache(const std::string& id, bool& expired) const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Asks Redis, and caches the answer if another server has the session. kUnknown if Redis does not answer.
   Location LocateInRedis(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_, calls_mutex_);
   // Runs kSave for a session of this server. Returns 1 if it was written, 0 if another server has the session or it was
   // deleted; UNAVAILABLE if Redis does not answer.
   absl::StatusOr<std::int64_t> WriteCopy(const std::string& id, std::vector<std::string> arguments);
+  // Deletes the copy of a session that was deleted here.
   store::Copied CopyDeletion(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Records whether a copy lacks something: then the next renewal has it written whole.
   void SetCopyIncomplete(const std::string& id, bool incomplete) ABSL_LOCKS_EXCLUDED(mutex_);
   // Has an incomplete copy written whole and waits for it. False after 2 s.
   bool AwaitCompleteCopy(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -141,6 +151,7 @@ class Cluster final : public store::Ownership {
   std::vector<std::string> ApplyRenewal(const std::vector<std::pair<std::string, std::int64_t>>& leases,
                                         const Reply& answers, Clock::time_point requested, bool reconnected)
       ABSL_LOCKS_EXCLUDED(mutex_);
+  // The functions of the two threads; they end once `leaving_` is set.
   void RenewalLoop();
   void TakeoverLoop();
   // Takes over sessions without a lease; `free_since` has when each was first seen without one.

@@ -8,7 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/cluster/cluster.h"
 #include "server/cluster/scripts.h"
-#include "server/schema/sha256.h"
+#include "server/crypto/sha256.h"
 
 namespace phrenic::cluster {
 namespace {

@@ -19,6 +19,7 @@ namespace phrenic::cluster {
 
 class RedisTls;
 
+// Where Redis listens, and how this server identifies itself there.
 struct RedisAddress {
   std::string host;
   int port = 6379;
@@ -58,19 +59,24 @@ class Redis {
   // Returns the number of connections made so far; a change means that Redis may have restarted.
   int connections() const { return connections_; }
 
+  // Of connecting, and of each command: callers wait no longer, so that calls of clients fail in time.
   static constexpr absl::Duration kTimeout = absl::Milliseconds(400);
+  // After a failure, so that a Redis that is down costs each caller no timeout.
   static constexpr absl::Duration kReconnectPause = absl::Milliseconds(500);
 
  private:
   struct Free {
     void operator()(redisContext* context) const;
   };
+  // Connects, with TLS if `encrypted`, and authenticates. UNAVAILABLE.
   absl::Status Connect();
   // Closes the connection and returns UNAVAILABLE.
   absl::Status Disconnect(const std::string& why);
+  // Performs the handshake of TLS on the connection's socket. The errors of RedisTls::Connect.
   absl::Status ConnectTls();
   // Sends a command and waits for the reply; null if the connection fails.
   redisReply* Exchange(std::vector<const char*>& texts, std::vector<std::size_t>& sizes);
+  // Connects if needed, sends a command and copies the reply. The errors of Run.
   absl::StatusOr<Reply> Send(const std::vector<std::string>& words);
 
   const RedisAddress address_;

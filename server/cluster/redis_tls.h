@@ -36,7 +36,9 @@ class RedisTls {
   using Stream = std::unique_ptr<SSL, Free<SSL, &SSL_free>>;
 
   explicit RedisTls(Stream stream) : stream_(std::move(stream)) {}
+  // Returns a context that verifies the peer by the authorities in `files`. INVALID_ARGUMENT names a bad file.
   static absl::StatusOr<Context> MakeContext(const RedisTlsFiles& files);
+  // Writes all bytes. False if the connection fails or times out.
   bool Write(const char* bytes, std::size_t size);
 
   Stream stream_;

@@ -20,9 +20,11 @@ class Records {
   // `store` outlives the records; null: there is none.
   Records(std::string kind, store::Store* store) : kind_(std::move(kind)), store_(store) {}
 
+  // True if there is a store: jobs resume after a restart.
   bool kept() const { return store_ != nullptr; }
-  // Writes or replaces a record, on the disk within milliseconds.
+  // Writes or replaces a record, on the disk within milliseconds. Does not wait; errors are those of Flush.
   void Put(const std::string& id, std::string bytes) const;
+  // Removes a record, if there is one, in the same way.
   void Remove(const std::string& id) const;
   // Waits until all earlier calls are on the disk. Returns the errors of Store::FlushRecords.
   absl::Status Flush() const;

@@ -11,10 +11,29 @@
 namespace phrenic {
 namespace {
 
+// The bindings of a body to triangles of deformable ones, one per vertex; null if it has none.
+const std::vector<TriangleBinding>* BindingsOf(const Model& model, const BodyModel& body) {
+  if (body.skin < 0 || model.skins[body.skin].triangles.empty()) return nullptr;
+  return &model.skins[body.skin].triangles;
+}
+
+bool CanBePulled(const Model& model, const BodyModel& body) {
+  return body.first_vertex >= 0 || BindingsOf(model, body) != nullptr;
+}
+
+// Returns the simulated vertex that moves a vertex of the body: that vertex, or the corner next to it.
+int MovingVertex(const Model& model, const BodyModel& body, int vertex) {
+  if (body.first_vertex >= 0) return body.first_vertex + vertex;
+  const TriangleBinding& binding = (*BindingsOf(model, body))[static_cast<std::size_t>(vertex)];
+  Eigen::Index nearest = 0;
+  binding.weights.maxCoeff(&nearest);
+  return binding.corners[nearest];
+}
+
 absl::Status NoSuchBody(const Model& model, const std::string& name, const std::string& path) {
   std::vector<std::string> names;
   for (const BodyModel& body : model.bodies) {
-    if (body.first_vertex >= 0) names.push_back(body.name);
+    if (CanBePulled(model, body)) names.push_back(body.name);
   }
   return absl::InvalidArgumentError(absl::StrCat(path, ".body: there is no deformable body \"", name, "\"; there are ",
                                                  names.empty() ? "none" : absl::StrJoin(names, ", ")));
@@ -22,14 +41,14 @@ absl::Status NoSuchBody(const Model& model, const std::string& name, const std::
 
 absl::StatusOr<int> FindVertex(const Model& model, const v1::Pull& pull, const std::string& path) {
   const auto body = std::find_if(model.bodies.begin(), model.bodies.end(),
-                                 [&pull](const BodyModel& b) { return b.name == pull.body() && b.first_vertex >= 0; });
+                                 [&](const BodyModel& b) { return b.name == pull.body() && CanBePulled(model, b); });
   if (body == model.bodies.end()) return NoSuchBody(model, pull.body(), path);
   const auto vertices = body->mesh.vertices.cols();
   if (pull.vertex() < 0 || pull.vertex() >= vertices) {
     return absl::InvalidArgumentError(absl::StrCat(path, ".vertex: there is no vertex ", pull.vertex(), " in body \"",
                                                    pull.body(), "\": its vertices are 0 to ", vertices - 1));
   }
-  const int vertex = body->first_vertex + pull.vertex();
+  const int vertex = MovingVertex(model, *body, pull.vertex());
   if (model.inverse_mass[vertex] > 0) return vertex;
   return absl::InvalidArgumentError(absl::StrCat(path, ".vertex: vertex ", pull.vertex(), " of body \"", pull.body(),
                                                  "\" is fixed or driven and follows no pull; choose another"));

@@ -1,12 +1,12 @@
-// Nearest-vertex search over a fixed point set, by nanoflann's k-d tree. For the nearest point of a surface see
-// triangle_tree.h.
+// Nearest-vertex search over a fixed point set, by a bounding volume hierarchy (box_tree.h). For the nearest point of a
+// surface see triangle_tree.h.
 #ifndef PHRENIC_SERVER_MESH_NEAREST_H_
 #define PHRENIC_SERVER_MESH_NEAREST_H_
 
 #include <limits>
-#include <memory>
 #include <vector>
 
+#include "server/mesh/box_tree.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic {
@@ -19,11 +19,8 @@ struct Neighbour {
 // Immutable after construction; thread-safe. Keeps its own copy of the points.
 class NearestSearch {
  public:
-  // Requires: at least one point.
-  explicit NearestSearch(Points points);
-  ~NearestSearch();
-  NearestSearch(const NearestSearch&) = delete;
-  NearestSearch& operator=(const NearestSearch&) = delete;
+  // `points`: 3 x n, one column per vertex [m].
+  explicit NearestSearch(const Points& points);
 
   // Returns the nearest vertex; ties go to the lowest index, so that the result does not depend on the tree. Returns
   // vertex -1 at infinite distance if no vertex is within `reach` [m]. A small reach makes the search faster.
@@ -33,8 +30,9 @@ class NearestSearch {
   std::vector<Neighbour> Within(const Eigen::Vector3d& point, double radius) const;
 
  private:
-  struct Tree;
-  std::unique_ptr<Tree> tree_;
+  BoxTree tree_;
+  BoxTree::Boxes boxes_;
+  Points points_;  // in the tree's order
 };
 
 }  // namespace phrenic

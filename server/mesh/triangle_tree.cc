@@ -1,10 +1,8 @@
 #include "server/mesh/triangle_tree.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace phrenic {
@@ -12,7 +10,6 @@ namespace {
 
 constexpr int kLeaf = 4;        // triangles
 constexpr double kTie = 1e-10;  // relative difference of squared distances that counts as a tie
-constexpr int kMaxStack = 64;   // nodes to visit; a balanced tree needs one per level
 
 double Ratio(double part, double whole) { return whole > 0 ? part / whole : 0; }
 
@@ -51,29 +48,10 @@ TriangleTree::TriangleTree(const ConstPoints& x, const Triangles& triangles) : t
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
     centroids.col(t) = (x.col(triangles(0, t)) + x.col(triangles(1, t)) + x.col(triangles(2, t))) / 3;
   }
-  std::vector<int> order(static_cast<size_t>(triangles.cols()));
-  std::iota(order.begin(), order.end(), 0);
-  nodes_.push_back({0, static_cast<int>(triangles.cols())});
-  for (int node = 0; node < static_cast<int>(nodes_.size()); ++node) Split(node, centroids, order);
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) triangles_.col(t) = triangles.col(order[static_cast<size_t>(t)]);
+  tree_ = BoxTree(centroids, kLeaf);
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) triangles_.col(t) = triangles.col(tree_.order()[t]);
   boundary_vertex_.assign(static_cast<size_t>(x.cols()), false);
   FindBoundary();
-}
-
-// Splits a node's triangles at the median along the longest side of the bounding box of their centroids.
-void TriangleTree::Split(int node, const Points& centroids, std::vector<int>& order) {
-  const auto [first, count, left] = nodes_[node];
-  if (count <= kLeaf) return;
-  Eigen::AlignedBox3d box;
-  for (int i = first; i < first + count; ++i) box.extend(centroids.col(order[i]));
-  int axis = 0;
-  box.sizes().maxCoeff(&axis);
-  const auto begin = order.begin() + first, half = begin + count / 2;
-  std::nth_element(begin, half, begin + count,
-                   [&](int a, int b) { return std::pair(centroids(axis, a), a) < std::pair(centroids(axis, b), b); });
-  nodes_[node].left = static_cast<int>(nodes_.size());
-  nodes_.push_back({first, count / 2});
-  nodes_.push_back({first + count / 2, count - count / 2});
 }
 
 void TriangleTree::FindBoundary() {
@@ -96,18 +74,10 @@ void TriangleTree::FindBoundary() {
 }
 
 void TriangleTree::Fit(const ConstPoints& x, Boxes& boxes) const {
-  if (boxes.size() < nodes_.size()) boxes.resize(nodes_.size());
-  for (int n = static_cast<int>(nodes_.size()) - 1; n >= 0; --n) {
-    const Node& node = nodes_[n];
-    boxes[n].setEmpty();
-    if (node.left >= 0) {
-      boxes[n].extend(boxes[node.left]).extend(boxes[node.left + 1]);
-      continue;
-    }
-    for (int t = node.first; t < node.first + node.count; ++t) {
-      for (int i = 0; i < 3; ++i) boxes[n].extend(x.col(triangles_(i, t)));
-    }
-  }
+  const auto extend = [&](int t, Eigen::AlignedBox3d& box) {
+    for (int i = 0; i < 3; ++i) box.extend(x.col(triangles_(i, t)));
+  };
+  tree_.Fit(extend, boxes);
 }
 
 void TriangleTree::Try(const ConstPoints& x, const Eigen::Vector3d& point, int t, SurfacePoint& best) const {
@@ -131,22 +101,8 @@ SurfacePoint TriangleTree::Nearest(const ConstPoints& x, const Boxes& boxes, con
                                    double reach) const {
   SurfacePoint best;
   best.squared = reach * reach;
-  std::array<int, kMaxStack> stack;
-  int depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const int n = stack[--depth];
-    if (boxes[n].squaredExteriorDistance(point) > best.squared * (1 + kTie)) continue;
-    const Node& node = nodes_[n];
-    if (node.left < 0) {
-      for (int t = node.first; t < node.first + node.count; ++t) Try(x, point, t, best);
-      continue;
-    }
-    const double left = boxes[node.left].squaredExteriorDistance(point);
-    const double right = boxes[node.left + 1].squaredExteriorDistance(point);
-    stack[depth++] = left <= right ? node.left + 1 : node.left;
-    stack[depth++] = left <= right ? node.left : node.left + 1;
-  }
+  const auto limit = [&best] { return best.squared * (1 + kTie); };
+  tree_.Visit(boxes, point, limit, [&](int t) { Try(x, point, t, best); });
   return best;
 }
 

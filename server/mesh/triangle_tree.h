@@ -1,12 +1,13 @@
-// Nearest-point search on a deforming triangle surface by a bounding volume hierarchy of axis-aligned boxes. The tree's
-// structure is built once; its boxes are refitted to the vertices' positions.
+// Nearest-point search on a deforming triangle surface by a bounding volume hierarchy (box_tree.h), whose boxes are
+// refitted to the vertices' positions.
 #ifndef PHRENIC_SERVER_MESH_TRIANGLE_TREE_H_
 #define PHRENIC_SERVER_MESH_TRIANGLE_TREE_H_
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <limits>
 #include <vector>
 
+#include "server/mesh/box_tree.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic {
@@ -33,7 +34,7 @@ struct SurfacePoint {
 // do not allocate.
 class TriangleTree {
  public:
-  using Boxes = std::vector<Eigen::AlignedBox3d>;
+  using Boxes = BoxTree::Boxes;
 
   TriangleTree() = default;
   TriangleTree(const ConstPoints& x, const Triangles& triangles);
@@ -45,16 +46,11 @@ class TriangleTree {
   Eigen::Vector3i triangle(int t) const { return triangles_.col(t); }
 
  private:
-  struct Node {
-    int first, count;  // the range of its triangles
-    int left = -1;     // its children are left and left + 1; -1 for a leaf
-  };
-  void Split(int node, const Points& middles, std::vector<int>& order);
   void FindBoundary();
   void Try(const ConstPoints& x, const Eigen::Vector3d& point, int triangle, SurfacePoint& best) const;
 
-  Triangles triangles_;  // in the tree's order
-  std::vector<Node> nodes_;
+  BoxTree tree_;
+  Triangles triangles_;                         // in the tree's order
   std::vector<Eigen::Vector3i> boundary_edge_;  // per triangle: 1 if the edge opposite that corner is a boundary edge
   std::vector<bool> boundary_vertex_;
 };

@@ -1,17 +1,17 @@
 // Reader of VTK XML PolyData (VTK File Formats, "XML File Formats"): text, base64 and appended data, uncompressed or
-// zlib. The writer is mesh/polydata.h.
+// zlib. The writer is vtk/polydata.h.
 #include <algorithm>
 #include <cstdint>
 #include <pugixml.hpp>
 
 #include "absl/strings/str_cat.h"
-#include "server/mesh/polydata.h"
 #include "server/meshio/bytes.h"
 #include "server/meshio/formats.h"
 #include "server/meshio/frame.h"
 #include "server/meshio/text.h"
 #include "server/meshio/vtk_arrays.h"
 #include "server/meshio/vtk_cells.h"
+#include "server/vtk/polydata.h"
 
 namespace phrenic::meshio {
 namespace {

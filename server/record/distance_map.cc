@@ -2,10 +2,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "server/mesh/polydata.h"
 #include "server/mesh/units.h"
 #include "server/record/msh.h"
 #include "server/record/text_block.h"
+#include "server/vtk/polydata.h"
 
 namespace phrenic::record {
 

@@ -2,9 +2,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "server/mesh/polydata.h"
 #include "server/mesh/units.h"
 #include "server/record/archive.h"
+#include "server/vtk/polydata.h"
 
 namespace phrenic::record {
 namespace {

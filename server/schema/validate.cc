@@ -1,4 +1,5 @@
-#include <boost/locale/utf.hpp>
+#include <google/protobuf/stubs/common.h>
+
 #include <cstdint>
 
 #include "absl/strings/str_cat.h"
@@ -27,13 +28,8 @@ std::string NamesOf(const EnumDescriptor& type) {
   return absl::StrJoin(names, ", ");
 }
 
-bool IsUtf8(const std::string& text) {
-  using Utf8 = boost::locale::utf::utf_traits<char>;
-  for (auto next = text.begin(); next != text.end();) {
-    if (!boost::locale::utf::is_valid_codepoint(Utf8::decode(next, text.end()))) return false;
-  }
-  return true;
-}
+// By protobuf's own check (RFC 3629), so that no message is refused when it is parsed from its bytes.
+bool IsUtf8(const std::string& text) { return google::protobuf::internal::IsStructurallyValidUTF8(text); }
 
 // A value of a field: entry `index` of a repeated field, or the field's own if `index` is -1.
 class Value {

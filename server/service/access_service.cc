@@ -2,8 +2,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "google/protobuf/util/time_util.h"
-#include "server/schema/secret.h"
-#include "server/schema/sha256.h"
+#include "server/crypto/secret.h"
+#include "server/crypto/sha256.h"
 #include "server/service/calls/session_call.h"
 #include "server/service/calls/status.h"
 

@@ -6,7 +6,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "google/protobuf/util/time_util.h"
-#include "server/schema/secret.h"
+#include "server/crypto/secret.h"
 
 namespace phrenic::session {
 namespace {

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/crypto/sha256.h"
 #include "server/schema/id.h"
-#include "server/schema/sha256.h"
 
 namespace phrenic::session {
 

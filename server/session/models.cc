@@ -13,6 +13,7 @@
 #include "server/mechanics/stop_check.h"
 #include "server/schema/schema.h"
 #include "server/session/meshes.h"
+#include "server/session/scene_hash.h"
 
 namespace phrenic::session {
 namespace {
@@ -132,6 +133,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Models::CompileNow(const v1::Scene&
                                                                 const Requester& by, Job& job) {
   CompileOptions options;
   options.size_of = MakeSizeSource(data_dir_, surfaces);
+  options.hash = &SceneHash;
   if (!by.trusted) options.limits = {limits_.vertices, limits_.elements};
   const auto size = EstimateSize(scene, options.size_of, options.limits);
   if (!size.ok()) return size.status();

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/crypto/secret.h"
 #include "server/mechanics/compile/compile.h"
 #include "server/mechanics/compile/presets.h"
 #include "server/mechanics/pulls.h"
@@ -11,7 +12,6 @@
 #include "server/schema/id.h"
 #include "server/schema/names.h"
 #include "server/schema/schema.h"
-#include "server/schema/secret.h"
 
 namespace phrenic::session {
 namespace {

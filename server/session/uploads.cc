@@ -7,10 +7,10 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
+#include "server/crypto/secret.h"
+#include "server/crypto/sha256.h"
 #include "server/mesh/units.h"
 #include "server/meshio/formats.h"
-#include "server/schema/secret.h"
-#include "server/schema/sha256.h"
 
 namespace phrenic::session {
 namespace {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/schema/sha256.h"
+#include "server/crypto/sha256.h"
 
 namespace phrenic::store {
 namespace {

@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "absl/strings/str_cat.h"
-#include "server/schema/secret.h"
+#include "server/crypto/secret.h"
 
 namespace phrenic::store {
 namespace {

@@ -9,7 +9,7 @@
 #include "absl/functional/function_ref.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
-#include "server/schema/sha256.h"
+#include "server/crypto/sha256.h"
 #include "server/store/saved_state.h"
 
 namespace phrenic::store {

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "absl/strings/str_cat.h"
-#include "server/schema/sha256.h"
+#include "server/crypto/sha256.h"
 
 namespace phrenic::access {
 namespace {

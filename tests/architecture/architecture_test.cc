@@ -75,6 +75,20 @@ TEST(Includes, OfGrpcAreOnlyAtTheEdge) {
   }
 }
 
+TEST(Includes, OfTheCoreAreOfFourLibraries) {
+  for (const std::string header : {"boost/asio/post.hpp", "openssl/evp.h", "zlib.h", "nanoflann.hpp"}) {
+    const std::string line = "#include <" + header + ">\n";
+    for (const std::string folder : {"schema", "mesh", "mechanics"}) {
+      EXPECT_THAT(FaultsOf("server/" + folder + "/x.cc", line), ElementsAre(HasSubstr("the core needs no libraries")));
+    }
+    EXPECT_THAT(FaultsOf("server/service/x.cc", line), IsEmpty());
+  }
+  for (const std::string header :
+       {"vector", "sys/mman.h", "Eigen/Core", "hwy/highway.h", "google/protobuf/message.h"}) {
+    EXPECT_THAT(FaultsOf("server/mesh/x.cc", "#include <" + header + ">\n"), IsEmpty());
+  }
+}
+
 TEST(Directions, AreReadFromATable) {
   const Directions read = DirectionsOf(
       "# Map\n\n| folder | what is in it | may include |\n|--|--|--|\n"

@@ -27,11 +27,22 @@ bool IsGrpc(const std::string& header) {
   return header.starts_with("grpc") || header.find(".grpc.pb.h") != std::string::npos;
 }
 
+// True if the header is of the standard library, POSIX, Abseil, Eigen, Highway, protobuf or Phrenic: what
+// -DPHRENIC_PARTS=core needs.
+bool IsOfTheCore(const std::string& header) {
+  static const std::regex core(R"re([a-z_]+|(absl|Eigen|google/protobuf|hwy|phrenic|server|sys)/.*)re");
+  return std::regex_match(header, core);
+}
+
 std::string IncludeFault(const Folders& allowed, const std::string& folder, const std::string& header) {
   static const Folders with_grpc = {"service", "daemon", "client", "main"};
   if (IsGrpc(header))
     return with_grpc.contains(folder) ? "" : "only service/, daemon/, client/ and main.cc include gRPC";
   if (header.starts_with("tests/")) return "only tests include tests";
+  static const Folders core = {"schema", "mesh", "mechanics"};
+  if (core.contains(folder) && !IsOfTheCore(header)) {
+    return "the core needs no libraries but Abseil, Eigen, Highway and protobuf";
+  }
   const std::string target = FolderOf(header);
   if (target.empty() || target == folder) return "";
   return allowed.contains(target) ? "" : folder + "/ may not include " + header;

@@ -30,7 +30,8 @@ using Directions = std::map<std::string, std::set<std::string>>;
 Directions DirectionsOf(std::string_view readme);
 
 // Checks the includes of a C++ file in server/ or client/ against `directions`, and that gRPC is included only in
-// service/, daemon/, client/ and main.cc. `path` is relative to the repository's root.
+// service/, daemon/, client/ and main.cc, and in the core (schema/, mesh/, mechanics/) only the libraries that it may
+// need. `path` is relative to the repository's root.
 Faults IncludeFaults(const Directions& directions, std::string_view path, std::string_view text);
 
 // The path without its ending: a source and its header are one unit.

@@ -12,25 +12,25 @@ TEST(Presets, AreListedAndRun) {
   const Outcome deep =
       Phrenic({"run", "thorax", "--resolution", "20", "--seconds", "0.01", "--preset", "deep", "-o", "json"});
   ASSERT_EQ(deep.code, 0) << deep.err;
-  EXPECT_EQ(deep.json()["session"]["parameters"]["breath_length"], 8);
+  EXPECT_EQ(deep.json()["session"]["parameters"]["breath_length"], 6);
 }
 
 TEST(Presets, AreOverriddenBySet) {
   const Outcome both = Phrenic({"run", "thorax", "--resolution", "20", "--seconds", "0.01", "--preset", "deep", "--set",
-                                "breath_length=6", "-o", "json"});
+                                "breath_length=7", "-o", "json"});
   ASSERT_EQ(both.code, 0) << both.err;
-  EXPECT_EQ(both.json()["session"]["parameters"]["breath_length"], 6);
-  EXPECT_GT(both.json()["session"]["parameters"]["rib_motion"], 1);
+  EXPECT_EQ(both.json()["session"]["parameters"]["breath_length"], 7);
+  EXPECT_GT(both.json()["session"]["parameters"]["diaphragm_activation"], 0.5);
 }
 
 TEST(Presets, UnknownOnesAreRejectedWithTheKnownOnes) {
   const Outcome none = Phrenic({"run", "thorax", "--resolution", "20", "--preset", "snore"});
   EXPECT_EQ(none.code, 1);
-  EXPECT_THAT(none.err, HasSubstr("has no preset \"snore\"; there are quiet, deep, diaphragmatic, chest"));
+  EXPECT_THAT(none.err, HasSubstr("has no preset \"snore\"; there are quiet, upright, deep"));
 }
 
 TEST(Physiology, PrintsValueRangeAndVerdict) {
-  const Outcome study = Phrenic({"physiology", "thorax", "--resolution", "20", "-o", "json"});
+  const Outcome study = Phrenic({"physiology", "thorax-thesis", "--resolution", "20", "-o", "json"});
   ASSERT_EQ(study.code, 0) << study.err;
   const auto rows = study.json()["rows"];
   ASSERT_GE(rows.size(), 40u);

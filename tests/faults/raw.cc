@@ -27,30 +27,6 @@ sockaddr_in Loopback(std::uint8_t last, int port) {
   return address;
 }
 
-void AppendBigEndian(std::string& bytes, std::uint32_t number, int width) {
-  for (int k = width - 1; k >= 0; --k) bytes.push_back(static_cast<char>(number >> (8 * k)));
-}
-
-std::uint32_t BigEndian(std::string_view bytes) {
-  std::uint32_t number = 0;
-  for (const char byte : bytes.substr(0, 4)) number = number << 8 | static_cast<std::uint8_t>(byte);
-  return number;
-}
-
-// Appends a text with its length (RFC 7541, section 5).
-void AppendText(std::string& block, std::string_view text) {
-  constexpr std::size_t kPrefix = 127;
-  if (text.size() < kPrefix) {
-    block.push_back(static_cast<char>(text.size()));
-  } else {
-    block.push_back(static_cast<char>(kPrefix));
-    std::size_t rest = text.size() - kPrefix;
-    for (; rest >= 128; rest /= 128) block.push_back(static_cast<char>(rest % 128 + 128));
-    block.push_back(static_cast<char>(rest));
-  }
-  block.append(text);
-}
-
 }  // namespace
 
 RawConnection::RawConnection(int port, bool encrypted) : socket_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
@@ -142,44 +118,10 @@ int StatusOf(int port, std::string_view request) {
   return connection.open() ? -1 : 0;
 }
 
-std::string Frame(FrameType type, std::uint8_t flags, std::uint32_t stream, std::string_view payload) {
-  std::string bytes;
-  AppendBigEndian(bytes, static_cast<std::uint32_t>(payload.size()), 3);
-  bytes.push_back(static_cast<char>(type));
-  bytes.push_back(static_cast<char>(flags));
-  AppendBigEndian(bytes, stream, 4);
-  return bytes.append(payload);
-}
-
-std::string HeaderBlock(const Headers& headers) {
-  std::string block;
-  for (const auto& [name, value] : headers) {
-    block.push_back(0);  // a literal that is not indexed, with its name
-    AppendText(block, name);
-    AppendText(block, value);
-  }
-  return block;
-}
-
-Headers CallHeaders(const std::string& path, const Headers& more) {
-  Headers headers = {{":method", "POST"},
-                     {":scheme", "http"},
-                     {":path", path},
-                     {":authority", "localhost"},
-                     {"content-type", "application/grpc"},
-                     {"te", "trailers"}};
-  headers.insert(headers.end(), more.begin(), more.end());
-  return headers;
-}
-
-std::string GrpcMessage(std::string_view message) {
-  std::string bytes(1, '\0');
-  AppendBigEndian(bytes, static_cast<std::uint32_t>(message.size()), 4);
-  return bytes.append(message);
-}
+std::string GrpcMessage(std::string_view message) { return http2::GrpcPrefix(message.size()).append(message); }
 
 Http2::Http2(int port, bool encrypted) : connection_(port, encrypted) {
-  connection_.Send(absl::StrCat("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", Frame(FrameType::kSettings, 0, 0, "")));
+  connection_.Send(std::string(http2::kPreface) + Frame(FrameType::kSettings, 0, 0, ""));
 }
 
 std::uint32_t Http2::Open(const Headers& headers, bool end) {
@@ -212,34 +154,32 @@ std::size_t Http2::SendData(std::uint32_t stream, std::string_view data) {
 }
 
 void Http2::Read(double seconds) {
-  constexpr std::size_t kHead = 9;
   unread_ += connection_.Receive(seconds);
   std::string_view rest = unread_;
-  while (rest.size() >= kHead) {
-    const std::size_t length = BigEndian(rest) >> 8;
-    if (rest.size() < kHead + length) break;
-    TakeFrame(static_cast<FrameType>(rest[3]), static_cast<std::uint8_t>(rest[4]),
-              BigEndian(rest.substr(5)) & 0x7fffffff, rest.substr(kHead, length));
-    rest.remove_prefix(kHead + length);
+  while (rest.size() >= http2::kFrameHead) {
+    const http2::FrameHead head(rest);
+    if (rest.size() < http2::kFrameHead + head.length) break;
+    TakeFrame(head, rest.substr(http2::kFrameHead, head.length));
+    rest.remove_prefix(http2::kFrameHead + head.length);
   }
   unread_ = std::string(rest);
 }
 
-void Http2::TakeFrame(FrameType type, std::uint8_t flags, std::uint32_t stream, std::string_view payload) {
-  const bool ends = (type == FrameType::kData || type == FrameType::kHeaders) && (flags & kEndStream) != 0;
+void Http2::TakeFrame(const http2::FrameHead& head, std::string_view payload) {
+  const auto [length, type, flags, stream] = head;
   if (type == FrameType::kSettings && (flags & kAck) == 0) TakeSettings(payload);
   if (type == FrameType::kPing && (flags & kAck) == 0) Send(Frame(FrameType::kPing, kAck, 0, payload));
-  if (type == FrameType::kWindow) (stream == 0 ? window_ : windows_[stream]) += BigEndian(payload);
+  if (type == FrameType::kWindow) (stream == 0 ? window_ : windows_[stream]) += http2::BigEndian(payload);
   if (type == FrameType::kGoAway) gone_ = true;
-  if (type == FrameType::kData && !payload.empty()) ++data_frames_;
-  if (ends || type == FrameType::kReset) ended_.insert(stream);
+  if (type == FrameType::kData && length > 0) ++data_frames_;
+  if (head.EndsStream()) ended_.insert(stream);
 }
 
 void Http2::TakeSettings(std::string_view payload) {
   constexpr int kInitialWindow = 4;
   for (; payload.size() >= 6; payload.remove_prefix(6)) {
-    if (BigEndian(payload) >> 16 != kInitialWindow) continue;
-    const std::int64_t window = BigEndian(payload.substr(2));
+    if (http2::BigEndian(payload) >> 16 != kInitialWindow) continue;
+    const std::int64_t window = http2::BigEndian(payload.substr(2));
     for (auto& [stream, left] : windows_) left += window - first_window_;
     first_window_ = window;
   }

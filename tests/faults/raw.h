@@ -10,12 +10,12 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
+
+#include "tests/support/http2.h"
 
 namespace phrenic::faults {
 
-using Headers = std::vector<std::pair<std::string, std::string>>;
+using http2::Headers;
 
 // A TCP connection to a loopback port from 127.0.0.66, so that the server sees another machine than that of its healthy
 // clients. Not thread-safe.
@@ -51,27 +51,11 @@ class RawConnection {
 // Returns the status code of the response to `request`; 0 if the connection ends without one, -1 without one in 5 s.
 int StatusOf(int port, std::string_view request);
 
-// --- HTTP/2 (RFC 9113, RFC 7541) ---
+// --- HTTP/2 ---
 
-enum class FrameType : std::uint8_t {
-  kData,
-  kHeaders,
-  kPriority,
-  kReset,
-  kSettings,
-  kPush,
-  kPing,
-  kGoAway,
-  kWindow,
-  kContinuation
-};
-inline constexpr std::uint8_t kEndStream = 1, kAck = 1, kEndHeaders = 4;
+using http2::Frame, http2::FrameType, http2::HeaderBlock, http2::CallHeaders;
+using http2::kEndStream, http2::kAck, http2::kEndHeaders;
 
-std::string Frame(FrameType type, std::uint8_t flags, std::uint32_t stream, std::string_view payload);
-// Returns header fields as literals without compression.
-std::string HeaderBlock(const Headers& headers);
-// Returns the header fields of a call of a method, such as "/phrenic.v1.ServerService/GetServer", and `more`.
-Headers CallHeaders(const std::string& path, const Headers& more = {});
 // Returns a gRPC message with its prefix.
 std::string GrpcMessage(std::string_view message);
 
@@ -96,7 +80,7 @@ class Http2 {
   int data_frames() const { return data_frames_; }
 
  private:
-  void TakeFrame(FrameType type, std::uint8_t flags, std::uint32_t stream, std::string_view payload);
+  void TakeFrame(const http2::FrameHead& head, std::string_view payload);
   void TakeSettings(std::string_view payload);
 
   RawConnection connection_;

@@ -8,7 +8,7 @@
 #include "phrenic/v1/session.grpc.pb.h"
 #include "phrenic/v1/study.grpc.pb.h"
 #include "phrenic/v1/upload.grpc.pb.h"
-#include "server/schema/sha256.h"
+#include "server/crypto/sha256.h"
 #include "tests/faults/attacks.h"
 
 namespace phrenic::faults {

@@ -176,7 +176,7 @@ struct LoadsOfEveryNumber {
 
 Eigen::Vector3d Loaded(Eigen::Vector3d f, const VertexLoads& loads, Eigen::Index vertex, const Eigen::Vector3d& v) {
   if (loads.c != nullptr) f -= loads.c[vertex] * v;
-  for (size_t l = 0; l < loads.count; ++l) f += loads.shared[l].share[vertex] * loads.shared[l].force;
+  for (size_t l = 0; l < loads.count; ++l) f += loads.shared[l].weight[vertex] * loads.shared[l].force;
   return f;
 }
 
@@ -253,7 +253,7 @@ TEST(Ranges, WhatIsHeldAndWhatAPoseCarriesAsVertexByVertexOnEveryInstructionSet)
     const double stiffness = 10 + i, damping = 0.1 * i;
     packet.x[lane] = rest.x(), packet.y[lane] = rest.y(), packet.z[lane] = rest.z();
     packet.stiffness[lane] = stiffness, packet.damping[lane] = damping;
-    packet.place[lane] = 3 * (23 - i);
+    packet.offset[lane] = 3 * (23 - i);
     held.col(23 - i) = stiffness * (rest - x.col(23 - i)) - damping * v.col(23 - i);
     plain.col(23 - i) = 0.5 * (stiffness * (pose.At(rest) - rest) + damping * pose.VelocityAt(rest));
   }

@@ -134,11 +134,12 @@ TEST(Compile, SaysWhyTheThesisDampingIsStableAtNoStep) {
   EXPECT_THAT(report("", 0.08).reason(), HasSubstr("stable at no step"));
 }
 
-TEST(Compile, SameSceneSameHashOtherSceneOther) {
-  const std::string springs = "forces { springs { bodies: 'sheet' stiffness: ";
-  const auto hash = [&](const char* k) { return CompileText(kBody + springs + k + " } }")->report.scene_hash(); };
-  EXPECT_EQ(hash("5"), hash("5.0"));
-  EXPECT_NE(hash("5"), hash("6"));
+TEST(Compile, ReportsTheHashThatItIsGiven) {
+  const auto scene = schema::ParseScene("test", std::string(kBody));
+  const auto none = [](const v1::Body&) { return absl::NotFoundError("no files"); };
+  const auto hash = [](const Model& model) { return model.bodies.front().name + "'s"; };
+  EXPECT_EQ((*Compile(*scene, none, {.hash = hash}))->report.scene_hash(), "sheet's");
+  EXPECT_EQ((*Compile(*scene, none))->report.scene_hash(), "");
 }
 
 TEST(Step, DivergenceNamesVertexForceAndRemedy) {

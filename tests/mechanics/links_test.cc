@@ -181,8 +181,8 @@ TEST(LinkPackets, AreRestoredAsLinkByLinkOnEveryInstructionSet) {
       FindDirections(packets, before.data(), directions);
       const Restored restored = RestorePackets(packets, directions, 0.01, here.x.data(), here.v.data());
       EXPECT_EQ(restored.missed, 1U << 3);
-      EXPECT_NEAR(restored.way, (here.x - start.x).cwiseAbs().maxCoeff(), 1e-15);
-      EXPECT_NEAR(restored.way, 0.01 * (here.v - start.v).cwiseAbs().maxCoeff(), 1e-15);
+      EXPECT_NEAR(restored.displacement, (here.x - start.x).cwiseAbs().maxCoeff(), 1e-15);
+      EXPECT_NEAR(restored.displacement, 0.01 * (here.v - start.v).cwiseAbs().maxCoeff(), 1e-15);
       restore(links[3], here);
       EXPECT_LT((here.x - plain.x).norm(), 1e-15);
       EXPECT_LT((here.v - plain.v).norm(), 1e-12);

@@ -99,6 +99,23 @@ TEST(Pulls, AreNamedAsPeopleNamedThem) {
   EXPECT_EQ(DescribePulls(*model, *found)[0].SerializeAsString(), list[0].SerializeAsString());
 }
 
+TEST(Pulls, OnAFollowerActOnTheVertexThatMovesIt) {
+  const auto model = CompileText(Triangle(
+      "bodies { name: 'seen' role: ROLE_SEEN polyhedron { vertices { x: 0.1 y: 0.7 } vertices { x: 0.6 y: 0.2 z: 0.1 } "
+      "vertices { x: 0.1 } triangles { a: 0 b: 1 c: 2 } } } "
+      "motions { skin { bodies: 'seen' drivers: 'sheet' mode: SKIN_MODE_TRIANGLES } }"));
+  PullList list;
+  *list.Add() = Of("seen", 0, 1, 0, 0);
+  *list.Add() = Of("seen", 1, 0, 2, 0);
+  const auto found = FindPulls(*model, list, "pulls");
+  ASSERT_TRUE(found.ok()) << found.status();
+  EXPECT_EQ((*found)[0].vertex, 2);
+  EXPECT_EQ((*found)[1].vertex, 1);
+  EXPECT_EQ(DescribePulls(*model, *found)[0].body(), "sheet");
+  *list.Add() = Of("seen", 2, 1, 0, 0);
+  EXPECT_THAT(std::string(FindPulls(*model, list, "pulls").status().message()), HasSubstr("fixed or driven"));
+}
+
 TEST(Pulls, OnNothingThatCanMoveAreRefused) {
   EXPECT_EQ(Refusal(Of("shet", 1, 1, 0, 0)), "pulls[0].body: there is no deformable body \"shet\"; there are sheet");
   EXPECT_THAT(Refusal(Of("post", 1, 1, 0, 0)), HasSubstr("no deformable body"));

@@ -246,7 +246,7 @@ TEST_F(Calls, ReadinessFailsWhileCallsDoNotGetThrough) {
 TEST_F(Calls, ARequestThatDoesNotEndTimesOut) {
   Start({"--idle-seconds", "1"});
   RawHttp2 client(server_->port());
-  const int stream = client.Begin("/phrenic.v1.SessionService/ListSessions");
+  const std::uint32_t stream = client.Begin("/phrenic.v1.SessionService/ListSessions");
   client.SendPart(stream, 1000, 10);
   const absl::Time start = absl::Now();
   EXPECT_TRUE(client.AwaitEnd(stream));
@@ -260,7 +260,7 @@ TEST_F(Calls, UnfinishedRequestsBlockNoOtherAndHoldLittleMemory) {
   for (int i = 0; i < 8; ++i) {
     clients.push_back(std::make_unique<RawHttp2>(server_->port()));
     for (int j = 0; j < 100; ++j) {
-      const int stream = clients.back()->Begin("/phrenic.v1.UploadService/AddUploadChunk");
+      const std::uint32_t stream = clients.back()->Begin("/phrenic.v1.UploadService/AddUploadChunk");
       clients.back()->SendPart(stream, (16 << 20) - 1, 500);
     }
   }
@@ -273,7 +273,7 @@ TEST_F(Calls, WithoutAccountNoRequestIsRead) {
   for (const char* method : {"/phrenic.v1.SessionService/CreateSession", "/phrenic.v1.ServerService/GetServer",
                              "/grpc.health.v1.Health/Check", kReflection}) {
     RawHttp2 client(server_->port());
-    const int stream = client.Begin(method);
+    const std::uint32_t stream = client.Begin(method);
     client.SendPart(stream, (16 << 20) - 1, 10);
     EXPECT_TRUE(client.AwaitEnd(stream)) << method;
   }

@@ -1,6 +1,6 @@
 // Requests to the gRPC port, of a server alone and of one in a cluster, that would be illegal if they were passed on;
 // and a cluster over TLS.
-#include "tests/service/raw_grpc_call.h"
+#include "tests/service/raw_http2.h"
 // After Boost, which needs <utility> first.
 #include <boost/asio/ip/tcp.hpp>
 #include <filesystem>
@@ -46,29 +46,28 @@ class GrpcEdge : public ServerFixture {
   // Sends calls that gRPC receives but may not send, and expects that the server ends them and answers the next.
   void Attack() {
     const std::string path = "/phrenic.v1.SessionService/ListSessions";
-    const std::vector<std::pair<std::string, Http2Headers>> calls = {{path, {{"authorization", "Bearer \xe9"}}},
-                                                                     {path, {{"x-a", "a\tb"}}},
-                                                                     {path, {{"x-a", std::string("a\0b\r\nc", 6)}}},
-                                                                     {path, {{"x-a!b", "c"}}},
-                                                                     {path, {{"x-\xe9", "c"}}},
-                                                                     {path, {{"X-A", "c"}}},
-                                                                     {path, {{"x-phrenic-via", "\xe9"}}},
-                                                                     {path, {{"x-phrenic-peer", "\xe9"}}},
-                                                                     {path, {{"x-session-id", "\xe9"}}},
-                                                                     {path, {{"x-a-bin", "***"}}},
-                                                                     {path, {{"x-a-bin", "/////w=="}}},
-                                                                     {path, {{"x-a", std::string(7900, 'a')}}},
-                                                                     {path, {{"grpc-timeout", "99999999H"}}},
-                                                                     {path, {{"grpc-timeout", "1n"}}},
-                                                                     {path, {{"grpc-encoding", "\xe9"}}},
-                                                                     {"/\xe9/\n", {}},
-                                                                     {"//", {}},
-                                                                     {"nothing", {}},
-                                                                     {"", {}}};
+    const std::vector<std::pair<std::string, http2::Headers>> calls = {{path, {{"authorization", "Bearer \xe9"}}},
+                                                                       {path, {{"x-a", "a\tb"}}},
+                                                                       {path, {{"x-a", std::string("a\0b\r\nc", 6)}}},
+                                                                       {path, {{"x-a!b", "c"}}},
+                                                                       {path, {{"x-\xe9", "c"}}},
+                                                                       {path, {{"X-A", "c"}}},
+                                                                       {path, {{"x-phrenic-via", "\xe9"}}},
+                                                                       {path, {{"x-phrenic-peer", "\xe9"}}},
+                                                                       {path, {{"x-session-id", "\xe9"}}},
+                                                                       {path, {{"x-a-bin", "***"}}},
+                                                                       {path, {{"x-a-bin", "/////w=="}}},
+                                                                       {path, {{"x-a", std::string(7900, 'a')}}},
+                                                                       {path, {{"grpc-timeout", "99999999H"}}},
+                                                                       {path, {{"grpc-timeout", "1n"}}},
+                                                                       {path, {{"grpc-encoding", "\xe9"}}},
+                                                                       {"/\xe9/\n", {}},
+                                                                       {"//", {}},
+                                                                       {"nothing", {}},
+                                                                       {"", {}}};
     for (const auto& [target, headers] : calls) {
-      RawSocket socket(server_->port());
-      socket.Send(Http2Call(target, headers));
-      AwaitEndOfStream(socket);  // or gRPC closes the connection
+      RawHttp2 client(server_->port());
+      client.AwaitEnd(client.Call(target, headers));  // or gRPC closes the connection
       const grpc::Status status = Session(&v1::SessionService::Stub::ListSessions, "");
       ASSERT_TRUE(status.ok()) << status.error_message();
     }
@@ -78,9 +77,8 @@ class GrpcEdge : public ServerFixture {
 TEST_F(GrpcEdge, NoHeaderStopsAServer) { Attack(); }
 
 TEST_F(GrpcEdge, TheLongestDeadlineOfACallIsNoOverflow) {
-  RawSocket socket(server_->port());
-  socket.Send(Http2Call("/phrenic.v1.SessionService/ListSessions", {{"grpc-timeout", "99999999H"}}));
-  EXPECT_TRUE(AwaitEndOfStream(socket));
+  RawHttp2 client(server_->port());
+  EXPECT_TRUE(client.AwaitEnd(client.Call("/phrenic.v1.SessionService/ListSessions", {{"grpc-timeout", "99999999H"}})));
 }
 
 // A server in a cluster of its own.

@@ -45,12 +45,7 @@ class GuardedServer : public ServerFixture {
   grpc::Status CallAs(const As& who, Stub& stub,
                       grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
                       const std::string& text, Response* response) {
-    Request request;
-    EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &request)) << text;
-    grpc::ClientContext context;
-    context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));
-    Sign(who, context);
-    return (stub.*method)(&context, request, response);
+    return Call(stub, method, text, response, [&](grpc::ClientContext& context) { Sign(who, context); });
   }
   void Sign(const As& who, grpc::ClientContext& context) const {
     if (!who.name.empty()) context.AddMetadata("authorization", "Bearer " + tokens_.at(who.name));

@@ -10,7 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "phrenic/v1/study.grpc.pb.h"
 #include "phrenic/v1/upload.grpc.pb.h"
-#include "server/schema/sha256.h"
+#include "server/crypto/sha256.h"
 #include "tests/service/guarded_server.h"
 
 namespace phrenic::service {

@@ -10,13 +10,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
-#include "google/protobuf/text_format.h"
 #include "phrenic/v1/access.grpc.pb.h"
 #include "phrenic/v1/control.grpc.pb.h"
 #include "phrenic/v1/session.grpc.pb.h"
 #include "server/service/server.h"
 #include "tests/cluster/cut_proxy.h"
 #include "tests/cluster/redis_server.h"
+#include "tests/service/call.h"
 
 namespace phrenic::service {
 namespace {
@@ -51,15 +51,6 @@ class Member {
     control_ = v1::ControlService::NewStub(channel);
   }
 
-  template <class Stub, class Request, class Response>
-  grpc::Status Call(Stub& stub, grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
-                    const std::string& text, Response* response) {
-    Request request;
-    EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &request)) << text;
-    grpc::ClientContext context;
-    context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));
-    return (stub.*method)(&context, request, response);
-  }
   grpc::Status Create(const std::string& id) {
     v1::CreateSessionResponse response;
     return Call(*sessions_, &Sessions::CreateSession,

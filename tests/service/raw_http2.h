@@ -2,11 +2,11 @@
 #ifndef PHRENIC_TESTS_SERVICE_RAW_HTTP2_H_
 #define PHRENIC_TESTS_SERVICE_RAW_HTTP2_H_
 
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "tests/service/raw_socket.h"
+// After Boost, which needs <utility> first.
+#include <string>
+
+#include "tests/support/http2.h"
 
 namespace phrenic::service {
 
@@ -15,70 +15,43 @@ namespace phrenic::service {
 class RawHttp2 {
  public:
   explicit RawHttp2(int port) : socket_(port) {
-    constexpr char kPreface[] = "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n";
-    socket_.Send(kPreface + Frame(kSettings, 0, 0, "") + Frame(kSettings, kAck, 0, ""));
+    socket_.Send(std::string(http2::kPreface) + http2::Frame(http2::FrameType::kSettings, 0, 0, "") +
+                 http2::Frame(http2::FrameType::kSettings, http2::kAck, 0, ""));
   }
 
   // Begins a call of a method with the headers of gRPC and `more`. Returns its stream.
-  int Begin(const std::string& path, const std::vector<std::pair<std::string, std::string>>& more = {}) {
+  std::uint32_t Begin(const std::string& path, const http2::Headers& more = {}) {
     stream_ += 2;
-    std::string headers = "\x83\x86";  // :method POST, :scheme http (RFC 7541 appendix A)
-    headers += Literal(":path", path) + Literal(":authority", "x") + Literal("te", "trailers") +
-               Literal("content-type", "application/grpc");
-    for (const auto& [name, value] : more) headers += Literal(name, value);
-    socket_.Send(Frame(kHeaders, kEndHeaders, stream_, headers));
+    const std::string headers = http2::HeaderBlock(http2::CallHeaders(path, more));
+    socket_.Send(http2::Frame(http2::FrameType::kHeaders, http2::kEndHeaders, stream_, headers));
     return stream_;
   }
+  // Makes a whole call with an empty message. Returns its stream.
+  std::uint32_t Call(const std::string& path, const http2::Headers& more = {}) {
+    const std::uint32_t stream = Begin(path, more);
+    socket_.Send(http2::Frame(http2::FrameType::kData, http2::kEndStream, stream, http2::GrpcPrefix(0)));
+    return stream;
+  }
   // Sends the start of a message of `length` bytes: its prefix and `sent` zeros.
-  bool SendPart(int stream, std::size_t length, std::size_t sent) {
-    std::string prefix(1, '\0');
-    for (int shift = 24; shift >= 0; shift -= 8) prefix += static_cast<char>(length >> shift);
-    return socket_.Send(Frame(kData, 0, stream, prefix + std::string(sent, '\0')));
+  bool SendPart(std::uint32_t stream, std::size_t length, std::size_t sent) {
+    return socket_.Send(
+        http2::Frame(http2::FrameType::kData, 0, stream, http2::GrpcPrefix(length) + std::string(sent, '\0')));
   }
   // Reads frames until the server ends the stream. False if it closes the connection, or is silent for 10 s.
-  bool AwaitEnd(int stream) {
+  bool AwaitEnd(std::uint32_t stream) {
     for (;;) {
-      const std::string head = Get(kHead);
-      if (head.size() < kHead) return false;
-      std::size_t length = 0;
-      for (int i = 0; i < 3; ++i) length = length << 8 | static_cast<unsigned char>(head[i]);
-      if (Get(length).size() < length) return false;
-      const bool ends = head[3] == kReset || (head[3] == kHeaders && (head[4] & kEndStream) != 0);
-      if (ends && static_cast<unsigned char>(head[8]) == stream % 256) return true;
+      const std::string bytes = socket_.ReadExactly(http2::kFrameHead);
+      if (bytes.size() < http2::kFrameHead) return false;
+      const http2::FrameHead head(bytes);
+      if (socket_.ReadExactly(head.length).size() < head.length) return false;
+      if (head.type == http2::FrameType::kGoAway) return false;
+      if (head.stream == stream && head.EndsStream()) return true;
     }
   }
 
  private:
-  static constexpr char kData = 0, kHeaders = 1, kReset = 3, kSettings = 4;
-  static constexpr char kAck = 1, kEndStream = 1, kEndHeaders = 4;
-  static constexpr std::size_t kHead = 9;
-
-  // Returns `count` bytes; fewer at the end of the connection.
-  std::string Get(std::size_t count) {
-    while (received_.size() < count) {
-      const std::string more = socket_.ReadSome(1);
-      if (more.empty()) break;
-      received_ += more;
-    }
-    std::string bytes = received_.substr(0, count);
-    received_.erase(0, bytes.size());
-    return bytes;
-  }
-  static std::string Literal(const std::string& name, const std::string& value) {
-    return std::string(1, '\0') + static_cast<char>(name.size()) + name + static_cast<char>(value.size()) + value;
-  }
-  static std::string Frame(char type, char flags, int stream, const std::string& payload) {
-    std::string frame;
-    for (int shift = 16; shift >= 0; shift -= 8) frame += static_cast<char>(payload.size() >> shift);
-    frame += type;
-    frame += flags;
-    for (int shift = 24; shift >= 0; shift -= 8) frame += static_cast<char>(stream >> shift);
-    return frame + payload;
-  }
-
   RawSocket socket_;
-  std::string received_;
-  int stream_ = -1;
+  std::uint32_t stream_ = static_cast<std::uint32_t>(-1);
 };
 
 }  // namespace phrenic::service

@@ -16,6 +16,7 @@
 #include "phrenic/v1/frames.grpc.pb.h"
 #include "phrenic/v1/session.grpc.pb.h"
 #include "server/service/server.h"
+#include "tests/service/call.h"
 
 namespace phrenic::service {
 
@@ -47,17 +48,6 @@ class ServerFixture : public testing::Test {
     control_ = v1::ControlService::NewStub(channel_);
     frames_ = v1::FrameService::NewStub(channel_);
     exports_ = v1::ExportService::NewStub(channel_);
-  }
-
-  // Calls a method with a request in protobuf text format; the deadline is 30 s.
-  template <class Stub, class Request, class Response>
-  grpc::Status Call(Stub& stub, grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
-                    const std::string& text, Response* response) {
-    Request request;
-    EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &request)) << text;
-    grpc::ClientContext context;
-    context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));
-    return (stub.*method)(&context, request, response);
   }
 
   // Calls a method of SessionService and returns its status only.

@@ -4,7 +4,7 @@
 
 #include "absl/time/clock.h"
 #include "phrenic/v1/upload.grpc.pb.h"
-#include "server/schema/sha256.h"
+#include "server/crypto/sha256.h"
 #include "server/service/net/address.h"
 #include "tests/service/server_fixture.h"
 

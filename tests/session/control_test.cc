@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-#include "server/schema/secret.h"
+#include "server/crypto/secret.h"
 
 namespace phrenic::session {
 namespace {
@@ -34,25 +34,6 @@ class ControlTest : public testing::Test {
   const std::string anna_ = owners_.state().owner.token;
   absl::Time now_ = absl::FromUnixSeconds(1'700'000'000);
 };
-
-TEST(Token, HasAHundredAndTwentyEightBitsAndIsNeverRepeated) {
-  std::set<std::string> tokens;
-  for (int i = 0; i < 1000; ++i) tokens.insert(NewToken());
-  EXPECT_EQ(tokens.size(), 1000u);
-  for (const std::string& token : tokens) EXPECT_EQ(token.size(), 32u);
-}
-
-TEST(Token, EqualsOnlyItself) {
-  const std::string token = NewToken();
-  EXPECT_TRUE(SameToken(token, std::string(token)));
-  EXPECT_FALSE(SameToken(token, token.substr(1)));
-  EXPECT_FALSE(SameToken("", "")) << "no token is nobody's";
-  for (std::size_t i = 0; i < token.size(); ++i) {
-    std::string other = token;
-    other[i] = other[i] == '0' ? '1' : '0';
-    EXPECT_FALSE(SameToken(token, other));
-  }
-}
 
 TEST_F(ControlTest, EverybodyMayChangeASessionUnlessTheOwnerControlsIt) {
   EXPECT_TRUE(MayChange(everybodys_, ""));

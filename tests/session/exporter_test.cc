@@ -2,8 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "server/crypto/sha256.h"
 #include "server/mechanics/state.h"
-#include "server/schema/sha256.h"
 #include "server/session/export/export_catalogue.h"
 #include "tests/compile_text.h"
 #include "tests/small_scenes.h"

@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
+#include "server/crypto/sha256.h"
 #include "server/mechanics/state.h"
 #include "server/mechanics/step/step.h"
-#include "server/schema/sha256.h"
 #include "server/session/meshes.h"
 #include "server/session/uploads.h"
 #include "tests/compile_text.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "server/schema/sha256.h"
+#include "server/crypto/sha256.h"
 #include "server/session/table.h"
 #include "server/store/sqlite.h"
 #include "tests/fake_clock.h"

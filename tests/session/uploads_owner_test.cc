@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "absl/strings/str_cat.h"
-#include "server/schema/sha256.h"
+#include "server/crypto/sha256.h"
 #include "server/session/uploads.h"
 
 namespace phrenic::session {

@@ -133,7 +133,7 @@ HWY_INLINE Corners Around(const Cell& cell, const double* table) {
 HWY_INLINE void Push(const SliderPacket& packet, int lane, const WallFrame& frame, const WallTable& table,
                      double margin, double largest_depth, const double* x, double* f, double* pump, double* bucket) {
   const Tag d;
-  const Height at = HeightOf(points::Transposed<true>(x, packet.place + lane), frame);
+  const Height at = HeightOf(points::Transposed<true>(x, packet.offset + lane), frame);
   if (AllFarInside(at, table, margin)) return;
   const Turn turn = TurnOf(at);
   const Cell cell = CellOf(at, turn);
@@ -149,7 +149,7 @@ HWY_INLINE void Push(const SliderPacket& packet, int lane, const WallFrame& fram
   const Vectors force = {hn::Mul(push, hn::Sub(hn::Mul(by_turn, turn.by_x), hn::Div(at.x, distance))),
                          hn::Mul(push, hn::Add(hn::Mul(by_turn, turn.by_y), hn::Div(at.front, distance))),
                          hn::Mul(push, by_z)};
-  points::AddRows(points::ToRows(force), packet.place + lane, std::min(kWallLanes, packet.count - lane), f);
+  points::AddRows(points::ToRows(force), packet.offset + lane, std::min(kWallLanes, packet.count - lane), f);
   const Vector by_pump = Around(cell, table.by_pump.data()).At(cell);
   const Vector by_bucket = Around(cell, table.by_bucket.data()).At(cell);
   hn::StoreU(hn::Add(hn::LoadU(d, pump + lane), hn::Mul(push, by_pump)), d, pump + lane);

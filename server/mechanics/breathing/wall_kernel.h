@@ -34,10 +34,10 @@ void EvaluateWall(const std::vector<double>& rest, const std::array<std::vector<
 
 // Eight vertices that may touch the wall. Padding repeats the first vertex and is not counted.
 struct SliderPacket {
-  std::int32_t place[8];  // in x [doubles]
-  double stiffness[8];    // times the vertex' area [N/m]
-  double touching[8];     // gap from which the wall pushes [m]
-  std::int32_t count;     // that are no padding
+  std::int32_t offset[8];  // in x [doubles]
+  double stiffness[8];     // times the vertex' area [N/m]
+  double touching[8];      // gap from which the wall pushes [m]
+  std::int32_t count;      // that are no padding
 };
 
 // The generalised forces of the contact on the cage.

@@ -14,7 +14,6 @@
 #include "server/mechanics/compile/initial_velocities.h"
 #include "server/mechanics/compile/masses.h"
 #include "server/mechanics/compile/presets.h"
-#include "server/mechanics/compile/scene_hash.h"
 #include "server/mechanics/integrators/catalogue.h"
 #include "server/mechanics/skinning/tissue_bodies.h"
 #include "server/mechanics/stability/largest_step.h"
@@ -192,7 +191,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   ReportTissue(model);
   ReportIdleParameters(model.scene, model.report);
   model.report.set_scene(scene.name());
-  model.report.set_scene_hash(SceneHash(model));
+  if (options.hash != nullptr) model.report.set_scene_hash(options.hash(model));
   clock.End("hash", model.report);
   if (builder.stop.Stopped()) return builder.stop.status();
   ChooseStep(model);

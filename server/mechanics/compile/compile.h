@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "absl/status/statusor.h"
 #include "server/mechanics/compile/mesh_source.h"
@@ -13,12 +14,14 @@
 
 namespace phrenic {
 
-// What a compile may cost. By default, anything.
+// What a compile may cost, by default anything, and how the report identifies the scene.
 struct CompileOptions {
   SizeLimits limits = {};                     // checked before anything is built, and again with the meshes of files
   SizeSource size_of = nullptr;               // of files and generated parts
   std::function<bool()> cancelled = nullptr;  // true once the callers have gone; null: never
   double longest = 0;                         // [s]; 0: any time
+  // The report's scene_hash, of a model with bodies and elements (session/scene_hash.h); null: none.
+  std::function<std::string(const Model& model)> hash = nullptr;
 };
 
 // Thread-safe if `source` is. Errors of `source` are passed on; INVALID_ARGUMENT names the field:

@@ -173,7 +173,7 @@ Restored RestorePacketsHere(const LinkPacket* packets, int count, const LinkVect
                             double* v) {
   LinkVectors impulses[kPacketsTogether];
   std::uint64_t missed = 0;
-  points::Largest way;
+  points::Largest largest;
   for (int p = 0; p < count; ++p) {
     std::uint64_t of_packet = 0;
     for (int first = 0; first < packets[p].count; first += kLanes) {
@@ -181,8 +181,8 @@ Restored RestorePacketsHere(const LinkPacket* packets, int count, const LinkVect
     }
     missed |= (of_packet & ((1U << packets[p].count) - 1)) << (p * kPacketLinks);
   }
-  for (int p = 0; p < count; ++p) MoveAll(packets[p], impulses[p], 1 / dt, x, v, way);
-  return {missed, way.Whole()};
+  for (int p = 0; p < count; ++p) MoveAll(packets[p], impulses[p], 1 / dt, x, v, largest);
+  return {missed, largest.Whole()};
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ void FindDirections(absl::Span<const LinkPacket> packets, const double* x, LinkV
 
 struct Restored {
   std::uint64_t missed = 0;  // bit kPacketLinks p + i: link i of packet p is not restored
-  double way = 0;            // largest displacement of a coordinate of an end [m]; NaN if any is NaN
+  double displacement = 0;   // largest displacement of a coordinate of an end [m]; NaN if any is NaN
 };
 
 // Restores the links of up to kPacketsTogether packets without common movable vertices: x [m] and v [m/s], from the

@@ -22,8 +22,8 @@ std::vector<bool> PulledBefore(const Model& model) {
   for (const auto& force : model.forces) {
     const auto* line = dynamic_cast<const ActionLine*>(force.get());
     if (line == nullptr) continue;
-    for (Eigen::Index i = 0; i < line->share().size(); ++i) {
-      if (line->share()[i] > 0) pulled[static_cast<std::size_t>(i)] = true;
+    for (Eigen::Index i = 0; i < line->weights().size(); ++i) {
+      if (line->weights()[i] > 0) pulled[static_cast<std::size_t>(i)] = true;
     }
   }
   return pulled;
@@ -70,7 +70,7 @@ absl::StatusOr<std::unique_ptr<Force>> ActionLine::Make(const v1::ActionLine& sc
                                            : "its force is 0");
     return nullptr;
   }
-  force->SetShare(weights / weights.sum());
+  force->SetWeights(weights / weights.sum());
   builder.model.action_lines.push_back({name, bodies->front(), ToEigen(scene.origin()), direction, scene.radius()});
   builder.ReportElement("force", name, count, "vertices",
                         absl::StrFormat("%g N at the peak of a quiet breath", scene.force()));

@@ -113,7 +113,7 @@ void Attachment::PackInto(std::vector<Group>& groups, int pose, const AttachedVe
   const bool same_group = !groups.empty() && groups.back().block == block && groups.back().pose == pose;
   if (!same_group) groups.push_back({block, pose, packets_.size(), packets_.size()});
   const auto full = [offset](const HoldPacket& packet) {
-    return packet.count == kPacketVertices || packet.place[packet.count - 1] == offset;
+    return packet.count == kPacketVertices || packet.offset[packet.count - 1] == offset;
   };
   if (!same_group || full(packets_.back())) packets_.emplace_back();
   HoldPacket& packet = packets_.back();
@@ -121,7 +121,7 @@ void Attachment::PackInto(std::vector<Group>& groups, int pose, const AttachedVe
   packet.x[i] = attached.rest.x(), packet.y[i] = attached.rest.y(), packet.z[i] = attached.rest.z();
   packet.stiffness[i] = stiffness;
   packet.damping[i] = damping;
-  packet.place[i] = offset;
+  packet.offset[i] = offset;
   groups.back().end_packet = packets_.size();
 }
 

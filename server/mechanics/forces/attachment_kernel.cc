@@ -30,7 +30,7 @@ HWY_INLINE void AddForces(const HoldPacket* packet, const HoldPacket* end, doubl
     for (int first = 0; first < packet->count; first += kLanes) {
       const auto stiffness = hn::Load(d, packet->stiffness + first), damping = hn::Load(d, packet->damping + first);
       const Vectors force = force_of(*packet, first, stiffness, damping);
-      points::AddRows(points::ToRows(force), packet->place + first, packet->count - first, f);
+      points::AddRows(points::ToRows(force), packet->offset + first, packet->count - first, f);
     }
   }
 }
@@ -38,8 +38,8 @@ HWY_INLINE void AddForces(const HoldPacket* packet, const HoldPacket* end, doubl
 void AddHeldHere(const HoldPacket* packet, const HoldPacket* end, const double* x, const double* v, double* f) {
   const auto force_of = [&](const HoldPacket& of, int first, Vector stiffness, Vector damping) HWY_ATTR {
     const Vectors rest = AtRest(of, first);
-    const Vectors at = points::Transposed<true>(x, of.place + first),
-                  speed = points::Transposed<true>(v, of.place + first);
+    const Vectors at = points::Transposed<true>(x, of.offset + first),
+                  speed = points::Transposed<true>(v, of.offset + first);
     const auto along = [&](Vector r, Vector p, Vector s)
                            HWY_ATTR { return hn::Sub(hn::Mul(stiffness, hn::Sub(r, p)), hn::Mul(damping, s)); };
     return Vectors{along(rest.x, at.x, speed.x), along(rest.y, at.y, speed.y), along(rest.z, at.z, speed.z)};

@@ -16,7 +16,7 @@ inline constexpr int kPacketVertices = 8;
 struct alignas(64) HoldPacket {
   double x[kPacketVertices] = {}, y[kPacketVertices] = {}, z[kPacketVertices] = {};  // rest positions [m]
   double stiffness[kPacketVertices] = {}, damping[kPacketVertices] = {};             // [N/m], [N s/m]
-  std::int32_t place[kPacketVertices] = {};  // offset of the vertex in its block's arrays [doubles]; no duplicates
+  std::int32_t offset[kPacketVertices] = {};  // offset of the vertex in its block's arrays [doubles]; no duplicates
   std::int32_t count = 0;
 };
 

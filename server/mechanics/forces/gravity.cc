@@ -25,7 +25,7 @@ absl::StatusOr<std::unique_ptr<Force>> Gravity::Make(const v1::Gravity& scene, c
     mass.segment(body.first_vertex, vertices) = builder.model.mass.segment(body.first_vertex, vertices);
     count += vertices;
   }
-  force->SetShare(std::move(mass));
+  force->SetWeights(std::move(mass));
   builder.ReportElement("force", name, count, "vertices", "f = m g");
   return force;
 }

@@ -17,7 +17,7 @@ class SharedForce : public BlockForce {
   // Returns F at this moment [N].
   virtual Eigen::Vector3d Whole(const EvalContext& at) const = 0;
   // The weights s, one per simulated vertex.
-  const Eigen::VectorXd& share() const { return share_; }
+  const Eigen::VectorXd& weights() const { return weights_; }
   // True if any weight in this block of kVertexBlock vertices is not 0.
   bool ActsOn(Eigen::Index block) const { return acts_[static_cast<size_t>(block)]; }
 
@@ -27,10 +27,10 @@ class SharedForce : public BlockForce {
 
  protected:
   explicit SharedForce(std::string name) : BlockForce(std::move(name)) {}
-  void SetShare(Eigen::VectorXd share);
+  void SetWeights(Eigen::VectorXd weights);
 
  private:
-  Eigen::VectorXd share_;
+  Eigen::VectorXd weights_;
   std::vector<bool> acts_;  // one per block
 };
 

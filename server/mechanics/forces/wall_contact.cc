@@ -60,7 +60,7 @@ void WallContact::Pack() {
     SliderPacket& packet = packets_[i / kLanes];
     const size_t lane = i % kLanes;
     const Slider& slider = sliders_[i < sliders_.size() ? i : i - lane];
-    packet.place[lane] = 3 * slider.vertex;
+    packet.offset[lane] = 3 * slider.vertex;
     packet.stiffness[lane] = stiffness_ * slider.area;
     packet.touching[lane] = slider.touching;
     if (i < sliders_.size()) ++packet.count;

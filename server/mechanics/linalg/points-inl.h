@@ -50,23 +50,23 @@ HWY_INLINE Vectors Columns(const Point& point) {
 }
 #endif
 
-// The points at these places [doubles], transposed: one vector of every x, one of every y, one of every z. A point is
+// The points at these offsets [doubles], transposed: one vector of every x, one of every y, one of every z. A point is
 // one load, with what follows it; where that may not be read, as after the last of all or where another thread writes
 // it, `kAlone`.
-template <bool kAlone, typename Place>
-HWY_INLINE Vectors Transposed(const double* x, const Place* place) {
+template <bool kAlone, typename Offset>
+HWY_INLINE Vectors Transposed(const double* x, const Offset* offset) {
 #if HWY_TARGET == HWY_SCALAR
   const Tag d;
-  return {hn::Load(d, x + *place), hn::Load(d, x + *place + 1), hn::Load(d, x + *place + 2)};
+  return {hn::Load(d, x + *offset), hn::Load(d, x + *offset + 1), hn::Load(d, x + *offset + 2)};
 #elif HWY_TARGET <= HWY_AVX2
   const hn::FixedTag<double, 4> four;
   return Columns([&](int i) HWY_ATTR {
-    return kAlone ? hn::MaskedLoad(hn::FirstN(four, 3), four, x + place[i]) : hn::LoadU(four, x + place[i]);
+    return kAlone ? hn::MaskedLoad(hn::FirstN(four, 3), four, x + offset[i]) : hn::LoadU(four, x + offset[i]);
   });
 #else
   const Tag d;
-  const auto a = hn::LoadU(d, x + place[0]), b = hn::LoadU(d, x + place[1]);
-  const auto a_yz = hn::LoadU(d, x + place[0] + 1), b_yz = hn::LoadU(d, x + place[1] + 1);
+  const auto a = hn::LoadU(d, x + offset[0]), b = hn::LoadU(d, x + offset[1]);
+  const auto a_yz = hn::LoadU(d, x + offset[0] + 1), b_yz = hn::LoadU(d, x + offset[1] + 1);
   return {hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveUpper(d, a_yz, b_yz)};
 #endif
 }
@@ -100,14 +100,14 @@ HWY_INLINE void AddRow(const Rows& rows, int row, double* point) {
   point[2] += rows.z[row];
 }
 
-// The points at the first `count` places += rows.
-template <typename Place>
-HWY_INLINE void AddRows(const Rows& rows, const Place* place, int count, double* x) {
+// The points at the first `count` offsets += rows.
+template <typename Offset>
+HWY_INLINE void AddRows(const Rows& rows, const Offset* offset, int count, double* x) {
   if (count >= static_cast<int>(kLanes)) {
 #pragma GCC unroll 8
-    for (int i = 0; i < static_cast<int>(kLanes); ++i) AddRow(rows, i, x + place[i]);
+    for (int i = 0; i < static_cast<int>(kLanes); ++i) AddRow(rows, i, x + offset[i]);
   } else {
-    for (int i = 0; i < count; ++i) AddRow(rows, i, x + place[i]);
+    for (int i = 0; i < count; ++i) AddRow(rows, i, x + offset[i]);
   }
 }
 

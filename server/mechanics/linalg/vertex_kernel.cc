@@ -51,7 +51,7 @@ template <bool kRubs, size_t kCount>
 class Loads {
  public:
   explicit Loads(const VertexLoads& loads) : loads_(loads) {
-    for (size_t l = 0; l < kCount; ++l) forces_[l].Set(loads.shared[l].force), shares_[l] = loads.shared[l].share;
+    for (size_t l = 0; l < kCount; ++l) forces_[l].Set(loads.shared[l].force), weights_[l] = loads.shared[l].weight;
   }
 
   // Adds the loads on kLanes vertices to f; v are their velocities [m/s].
@@ -63,21 +63,21 @@ class Loads {
     }
 #pragma GCC unroll 4
     for (size_t l = 0; l < kCount; ++l) {
-      const Vector share = hn::LoadU(d, shares_[l] + vertex);
-      for (int i = 0; i < 3; ++i) f[i] = hn::Add(f[i], hn::Mul(spread.Of(share, i), forces_[l].At(i)));
+      const Vector weight = hn::LoadU(d, weights_[l] + vertex);
+      for (int i = 0; i < 3; ++i) f[i] = hn::Add(f[i], hn::Mul(spread.Of(weight, i), forces_[l].At(i)));
     }
   }
   // Returns a coordinate of the force on one vertex with its loads.
   double Sum(double f, Eigen::Index vertex, int i, double v) const {
     if constexpr (kRubs) f -= loads_.c[vertex] * v;
-    for (size_t l = 0; l < kCount; ++l) f += shares_[l][vertex] * loads_.shared[l].force[i];
+    for (size_t l = 0; l < kCount; ++l) f += weights_[l][vertex] * loads_.shared[l].force[i];
     return f;
   }
 
  private:
   const VertexLoads& loads_;
   Repeated forces_[kCount + 1];
-  const double* shares_[kCount + 1];
+  const double* weights_[kCount + 1];
 };
 
 // Calls Do::In(range, Loads<...>, ...) for the number of loads.

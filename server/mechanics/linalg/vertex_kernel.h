@@ -13,13 +13,13 @@
 
 namespace phrenic {
 
-// A force of which each vertex takes a share.
+// A force that constant weights distribute over vertices.
 struct SharedLoad {
-  const double* share = nullptr;                    // one per simulated vertex
+  const double* weight = nullptr;                   // one per simulated vertex
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  // [N]
 };
 
-// Forces on vertices that do not depend on other vertices: -c v + sum of share * force, in this order [N].
+// Forces on vertices that do not depend on other vertices: -c v + sum of weight * force, in this order [N].
 struct VertexLoads {
   static constexpr size_t kMost = 4;
 

@@ -1,14 +1,17 @@
 #include "server/mechanics/parallel/parallel_for.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <boost/asio/executor_work_guard.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/post.hpp>
+#include <chrono>
 #include <memory>
 #include <thread>
 #include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/synchronization/mutex.h"
 
 namespace phrenic {
 namespace {
@@ -17,55 +20,9 @@ namespace {
 constexpr std::int64_t kLeastParts = 16;
 // Polls for the end of the other threads before the caller yields its core.
 constexpr int kSpins = 2000;
-
-// Polls for work before a helper sleeps: longer than from one loop of a step to the next, since waking it takes longer
-// than its help saves.
-constexpr int kPolls = 1000;
-
-// Threads that run posted work.
-class Pool {
- public:
-  explicit Pool(int threads) {
-    for (int i = 1; i <= threads; ++i) threads_.emplace_back([this, i] { Help(i); });
-  }
-  Pool(const Pool&) = delete;
-  Pool& operator=(const Pool&) = delete;
-  ~Pool() {
-    guard_.reset();
-    for (std::thread& thread : threads_) thread.join();
-  }
-
-  template <typename Work>
-  void Post(Work work) {
-    boost::asio::post(context_, [work = std::move(work)] { work(number); });
-  }
-
- private:
-  void Help(int own) {
-    number = own;
-    for (int polls = 0; !context_.stopped(); ++polls) {
-      if (context_.poll_one() > 0 || (polls > kPolls && context_.run_one() > 0)) polls = 0;
-    }
-  }
-
-  static thread_local int number;  // identity of a helper thread, from 1 on; 0 for other threads
-
-  boost::asio::io_context context_;
-  boost::asio::executor_work_guard<boost::asio::io_context::executor_type> guard_{context_.get_executor()};
-  std::vector<std::thread> threads_;
-};
-
-thread_local int Pool::number = 0;
-
-struct Helpers {
-  int threads = 1;  // with the caller
-  std::unique_ptr<Pool> pool;
-};
-
-Helpers& TheHelpers() {
-  static Helpers helpers;
-  return helpers;
-}
+// Time for which a helper polls for work before it sleeps: longer than from one loop of a step to the next, since
+// waking it takes longer than its help saves.
+constexpr std::chrono::microseconds kPollTime(50);
 
 // The parts of one call, in one run per thread. A thread begins with its own run and goes on with the rest of the
 // others. A helper that comes after all parts are taken does not call `work`, which is gone once the caller has
@@ -105,26 +62,88 @@ class Parts {
   std::atomic<std::int64_t> done_ = 0;
 };
 
+// Threads that help the callers of ParallelFor.
+class Helpers {
+ public:
+  explicit Helpers(int threads) {
+    for (int i = 1; i <= threads; ++i) threads_.emplace_back([this, i] { Help(i); });
+  }
+  Helpers(const Helpers&) = delete;
+  Helpers& operator=(const Helpers&) = delete;
+  ~Helpers() {
+    {
+      absl::MutexLock lock(&mutex_);
+      leaving_ = true;
+    }
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+  int count() const { return static_cast<int>(threads_.size()); }
+
+  // Asks every helper to take parts.
+  void Invite(const std::shared_ptr<Parts>& parts) ABSL_LOCKS_EXCLUDED(mutex_) {
+    absl::MutexLock lock(&mutex_);
+    invitations_.insert(invitations_.end(), threads_.size(), parts);
+    open_ = invitations_.size();
+  }
+  // Withdraws what no helper has accepted.
+  void Withdraw(const std::shared_ptr<Parts>& parts) ABSL_LOCKS_EXCLUDED(mutex_) {
+    if (open_ == 0) return;
+    absl::MutexLock lock(&mutex_);
+    std::erase(invitations_, parts);
+    open_ = invitations_.size();
+  }
+
+ private:
+  void Help(int own) {
+    while (const std::shared_ptr<Parts> parts = Next()) parts->Take(own);
+  }
+
+  // Waits for the oldest invitation, polling first. Returns null if the helpers are to end.
+  std::shared_ptr<Parts> Next() ABSL_LOCKS_EXCLUDED(mutex_) {
+    const auto sleep = std::chrono::steady_clock::now() + kPollTime;
+    while (open_ == 0 && std::chrono::steady_clock::now() < sleep) hwy::Pause();
+    absl::MutexLock lock(&mutex_);
+    mutex_.Await(absl::Condition(this, &Helpers::HasNews));
+    if (leaving_) return nullptr;
+    std::shared_ptr<Parts> parts = std::move(invitations_.front());
+    invitations_.erase(invitations_.begin());
+    open_ = invitations_.size();
+    return parts;
+  }
+  bool HasNews() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return leaving_ || !invitations_.empty(); }
+
+  absl::Mutex mutex_;
+  std::vector<std::shared_ptr<Parts>> invitations_ ABSL_GUARDED_BY(mutex_);  // oldest first, one per helper and call
+  bool leaving_ ABSL_GUARDED_BY(mutex_) = false;
+  std::atomic<std::size_t> open_ = 0;  // invitations, for polls without the lock
+  std::vector<std::thread> threads_;
+};
+
+std::unique_ptr<Helpers>& TheHelpers() {
+  static std::unique_ptr<Helpers> helpers;  // null: the caller works alone
+  return helpers;
+}
+
 }  // namespace
 
 void SetStepThreads(int threads) {
-  Helpers& helpers = TheHelpers();
-  helpers.pool.reset();
-  helpers.threads = std::max(1, threads);
-  if (helpers.threads > 1) helpers.pool = std::make_unique<Pool>(threads - 1);
+  TheHelpers().reset();
+  if (threads > 1) TheHelpers() = std::make_unique<Helpers>(threads - 1);
 }
 
-int StepThreads() { return TheHelpers().threads; }
+int StepThreads() { return TheHelpers() == nullptr ? 1 : TheHelpers()->count() + 1; }
 
 void ParallelFor(std::int64_t parts, absl::FunctionRef<void(std::int64_t)> work) {
-  const Helpers& helpers = TheHelpers();
-  if (helpers.threads == 1 || parts < kLeastParts) {
+  Helpers* const helpers = TheHelpers().get();
+  if (helpers == nullptr || parts < kLeastParts) {
     for (std::int64_t part = 0; part < parts; ++part) work(part);
     return;
   }
-  const auto shared = std::make_shared<Parts>(parts, helpers.threads, work);
-  for (int i = 1; i < helpers.threads; ++i) helpers.pool->Post([shared](int helper) { shared->Take(helper); });
+  const auto shared = std::make_shared<Parts>(parts, helpers->count() + 1, work);
+  helpers->Invite(shared);
   shared->Take(0);
+  helpers->Withdraw(shared);
   shared->Await();
 }
 

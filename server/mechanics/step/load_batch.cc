@@ -35,7 +35,7 @@ VertexLoads LoadBatch::LoadsOnBlock(const VertexRange& block, const EvalContext&
       AddLoads(block, loads, at.v, f);
       loads = {};
     }
-    loads.shared[loads.count++] = {force->share().data(), whole};
+    loads.shared[loads.count++] = {force->weights().data(), whole};
   }
   return loads;
 }

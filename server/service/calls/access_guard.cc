@@ -8,9 +8,9 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/time/clock.h"
+#include "server/crypto/secret.h"
+#include "server/crypto/sha256.h"
 #include "server/schema/schema.h"
-#include "server/schema/secret.h"
-#include "server/schema/sha256.h"
 #include "server/service/calls/messages.h"
 #include "server/service/calls/peer.h"
 

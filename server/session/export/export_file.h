@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "server/crypto/sha256.h"
 #include "server/record/spool_file.h"
-#include "server/schema/sha256.h"
 
 namespace phrenic::session {
 

@@ -65,12 +65,6 @@ TEST(InitialVelocity, KeepsRigidLinks) {
   EXPECT_LT((state.v.col(1) - Eigen::Vector3d(2, 1, 0)).norm(), 1e-12);
 }
 
-TEST(InitialVelocity, ChangesTheScenesHash) {
-  const auto one = CompileText(Dumbbell("initial_velocity { linear { x: 1 } }"));
-  const auto two = CompileText(Dumbbell("initial_velocity { linear { x: 2 } }"));
-  EXPECT_NE(one->report.scene_hash(), two->report.scene_hash());
-}
-
 TEST(InitialVelocity, SaysWhatIsWrongWithIt) {
   EXPECT_THAT(RefusalOfBody("initial_velocity { linear { x: 1e5 } }"),
               HasSubstr("bodies[0].initial_velocity: vertex 0 moves at 100000 m/s; at most 10000 m/s"));

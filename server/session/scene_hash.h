@@ -1,16 +1,17 @@
 // An identifier of a compiled scene: equal scenes and meshes have equal hashes, and hence equal motions.
-#ifndef PHRENIC_SERVER_MECHANICS_COMPILE_SCENE_HASH_H_
-#define PHRENIC_SERVER_MECHANICS_COMPILE_SCENE_HASH_H_
+#ifndef PHRENIC_SERVER_SESSION_SCENE_HASH_H_
+#define PHRENIC_SERVER_SESSION_SCENE_HASH_H_
 
 #include <string>
 
 #include "server/mechanics/model.h"
 
-namespace phrenic {
+namespace phrenic::session {
 
 // Returns the SHA-256, in hexadecimal, of the serialized scene and each body's vertices, triangles and edges.
+// Thread-safe.
 std::string SceneHash(const Model& model);
 
-}  // namespace phrenic
+}  // namespace phrenic::session
 
-#endif  // PHRENIC_SERVER_MECHANICS_COMPILE_SCENE_HASH_H_
+#endif  // PHRENIC_SERVER_SESSION_SCENE_HASH_H_

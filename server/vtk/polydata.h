@@ -1,7 +1,7 @@
 // VTK PolyData (surfaces and lines with data arrays) and its writer in XML format .vtp (VTK File Formats, "XML File
 // Formats"), for ParaView and 3D Slicer. meshio/vtp.cc reads the format.
-#ifndef PHRENIC_SERVER_MESH_POLYDATA_H_
-#define PHRENIC_SERVER_MESH_POLYDATA_H_
+#ifndef PHRENIC_SERVER_VTK_POLYDATA_H_
+#define PHRENIC_SERVER_VTK_POLYDATA_H_
 
 #include <string>
 #include <vector>
@@ -28,4 +28,4 @@ std::string WriteVtp(const PolyData& data);
 
 }  // namespace phrenic
 
-#endif  // PHRENIC_SERVER_MESH_POLYDATA_H_
+#endif  // PHRENIC_SERVER_VTK_POLYDATA_H_

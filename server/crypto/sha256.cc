@@ -1,4 +1,4 @@
-#include "server/schema/sha256.h"
+#include "server/crypto/sha256.h"
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/string_view.h"

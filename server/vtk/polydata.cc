@@ -1,4 +1,4 @@
-#include "server/mesh/polydata.h"
+#include "server/vtk/polydata.h"
 
 #include <zlib.h>
 

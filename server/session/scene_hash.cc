@@ -1,10 +1,10 @@
-#include "server/mechanics/compile/scene_hash.h"
+#include "server/session/scene_hash.h"
 
 #include <string_view>
 
-#include "server/schema/sha256.h"
+#include "server/crypto/sha256.h"
 
-namespace phrenic {
+namespace phrenic::session {
 namespace {
 
 template <typename Matrix>
@@ -26,4 +26,4 @@ std::string SceneHash(const Model& model) {
   return hash.Hex();
 }
 
-}  // namespace phrenic
+}  // namespace phrenic::session

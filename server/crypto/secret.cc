@@ -1,4 +1,4 @@
-#include "server/schema/secret.h"
+#include "server/crypto/secret.h"
 
 #include <openssl/crypto.h>
 #include <openssl/rand.h>

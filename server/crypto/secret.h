@@ -1,6 +1,6 @@
 // Bearer tokens: 128 random bits in hexadecimal. They must not appear in a log, an address or an error.
-#ifndef PHRENIC_SERVER_SCHEMA_SECRET_H_
-#define PHRENIC_SERVER_SCHEMA_SECRET_H_
+#ifndef PHRENIC_SERVER_CRYPTO_SECRET_H_
+#define PHRENIC_SERVER_CRYPTO_SECRET_H_
 
 #include <string>
 #include <string_view>
@@ -15,4 +15,4 @@ bool SameToken(std::string_view a, std::string_view b);
 
 }  // namespace phrenic
 
-#endif  // PHRENIC_SERVER_SCHEMA_SECRET_H_
+#endif  // PHRENIC_SERVER_CRYPTO_SECRET_H_

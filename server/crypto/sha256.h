@@ -1,6 +1,6 @@
 // SHA-256 (FIPS 180-4): identifies and checks scenes, uploads and exports.
-#ifndef PHRENIC_SERVER_SCHEMA_SHA256_H_
-#define PHRENIC_SERVER_SCHEMA_SHA256_H_
+#ifndef PHRENIC_SERVER_CRYPTO_SHA256_H_
+#define PHRENIC_SERVER_CRYPTO_SHA256_H_
 
 #include <openssl/evp.h>
 
@@ -28,4 +28,4 @@ std::string Sha256Hex(std::string_view bytes);
 
 }  // namespace phrenic
 
-#endif  // PHRENIC_SERVER_SCHEMA_SHA256_H_
+#endif  // PHRENIC_SERVER_CRYPTO_SHA256_H_
