@@ -30,14 +30,14 @@ struct PatientOptions {
   std::string out, name = "patient";
   double edge_length = 4;  // [mm]
   int vertices = 20000;
-  double tendon_share = 0.22;
+  double tendon_share = 0.17;
   bool serve = false;
   std::string web = "127.0.0.1:8080";
 };
 
 // Returns the generated thorax's scene, the template of patients' scenes.
 absl::StatusOr<v1::Scene> ReadTemplate() {
-  const std::string path = Installed("scenes", PHRENIC_SCENES_DIR) + "/thorax-thesis.textproto";
+  const std::string path = Installed("scenes", PHRENIC_SCENES_DIR) + "/thorax.textproto";
   const absl::StatusOr<std::string> text = ReadWhole(path, "the template of patients' scenes");
   if (!text.ok()) return text.status();
   return schema::ParseScene(path, *text);

@@ -175,15 +175,13 @@ PlaneLoop CavalOpening() { return Opening({-0.24, 0.12}, 13, 12); }
 
 PlaneLoop OesophagealOpening() { return Opening({0.09, 1.06}, 8, 11); }
 
-bool InTendon(const Eigen::Vector2d& p) {
-  const Eigen::Vector2d q = OnMeridian(p).q;
-  if (p.norm() > kFoldAt) return false;
+double OutsideLeaves(const Eigen::Vector2d& q) {
   const Eigen::Vector2d front(0.02, -0.4), middle(-0.02, -0.1), right(-0.52, 0.2), left(0.56, 0.24);
-  const double leaf =
-      std::min({ToSegment(q, middle, front) - 0.4, ToSegment(q, Eigen::Vector2d(-0.15, 0), right) - 0.36,
-                ToSegment(q, Eigen::Vector2d(0.12, -0.05), left) - 0.31});
-  return leaf < 0;
+  return std::min({ToSegment(q, middle, front) - 0.4, ToSegment(q, Eigen::Vector2d(-0.15, 0), right) - 0.36,
+                   ToSegment(q, Eigen::Vector2d(0.12, -0.05), left) - 0.31});
 }
+
+bool InTendon(const Eigen::Vector2d& p) { return p.norm() <= kFoldAt && OutsideLeaves(OnMeridian(p).q) < 0; }
 
 bool InRightCrus(const Eigen::Vector2d& p) {
   const Eigen::Vector3d x = DiaphragmPoint(p);

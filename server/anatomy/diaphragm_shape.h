@@ -39,6 +39,10 @@ PlaneLoop DiaphragmRim();
 PlaneLoop CavalOpening();
 PlaneLoop OesophagealOpening();
 
+// Returns how far a point of the disc is outside of the three leaves of the central tendon, in disc coordinates;
+// negative inside.
+double OutsideLeaves(const Eigen::Vector2d& q);
+
 // True in the trefoil central tendon, which contains the caval opening.
 bool InTendon(const Eigen::Vector2d& p);
 

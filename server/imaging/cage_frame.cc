@@ -43,7 +43,7 @@ Landmarks Find(const LabelVolume& volume, const std::vector<Part>& parts) {
     if (part.Is(v1::STRUCTURE_VERTEBRA)) marks.vertebrae[number] = BoundsOf(volume, part.mask);
     if (part.Is(v1::STRUCTURE_RIB) && number >= 6) marks.lower_ribs.extend(BoundsOf(volume, part.mask).box);
     if (part.Is(v1::STRUCTURE_LUNG)) marks.lungs.extend(BoundsOf(volume, part.mask).box);
-    if (part.Is(v1::STRUCTURE_STERNUM_BODY) || part.Is(v1::STRUCTURE_XIPHOID)) {
+    if (part.Is(v1::STRUCTURE_STERNUM_BODY) || part.Is(v1::STRUCTURE_XIPHOID) || part.Is(v1::STRUCTURE_MANUBRIUM)) {
       marks.sternum.extend(BoundsOf(volume, part.mask).box);
     }
   }
@@ -79,6 +79,14 @@ double SpineFront(const Landmarks& marks) {
   return nearest->second.box.min().y();
 }
 
+// Sets where the cage ends above. Requires: the centre is known.
+void SetTop(const Landmarks& marks, CageFrame& frame) {
+  const auto& [number, first] = *marks.vertebrae.begin();
+  frame.top = number == 1 || marks.lungs.isEmpty() ? first.box.max().z() : marks.lungs.max().z();
+  const double front = marks.sternum.isEmpty() ? frame.centre.y() : marks.sternum.max().y();
+  frame.top_centre = (front + first.box.min().y()) / 2;
+}
+
 // FAILED_PRECONDITION if the landmarks are not those of a person, lying or standing, in a volume of LPS millimetres.
 absl::Status CheckProportions(const CageFrame& frame, const Eigen::AlignedBox3d& cage) {
   constexpr double kNarrowest = 60, kWidest = 800;  // cage [mm]
@@ -107,6 +115,11 @@ Ray CageFrame::RayOf(const Eigen::Vector2d& p) const {
   return {centre, {across * azimuth.x(), across * azimuth.y(), std::cos(angle)}};
 }
 
+Eigen::Vector2d CageFrame::Axis(double z) const {
+  const double up = top > sternum_end ? std::clamp((z - sternum_end) / (top - sternum_end), 0.0, 1.0) : 0;
+  return {centre.x(), centre.y() + up * (top_centre - centre.y())};
+}
+
 absl::StatusOr<CageFrame> FindCageFrame(const LabelVolume& volume, const std::vector<Part>& parts,
                                         Messages& fallbacks) {
   const Landmarks marks = Find(volume, parts);
@@ -131,6 +144,7 @@ absl::StatusOr<CageFrame> FindCageFrame(const LabelVolume& volume, const std::ve
   // Anterior, so that rays reach the gutters beside the spine; low, so that they reach both domes.
   frame.centre = {middle, front + 0.3 * (frame.spine_front - front), frame.sternum_end - 0.3 * frame.width};
   frame.wall_length = 0.65 * frame.width;
+  SetTop(marks, frame);
   if (absl::Status status = CheckProportions(frame, cage); !status.ok()) return status;
   return frame;
 }

@@ -30,8 +30,15 @@ struct CageFrame {
   double lumbar[3] = {0, 0, 0};  // z of the centres of L1, L2, L3
   double vertebra_height = 0;    // distance between the centres of neighbouring vertebrae
   double spine_front = 0;        // y of the anterior face of the spine at T12
+  double top = 0;                // z of the upper end of the cage: of T1, else of the lungs
+  double top_centre = 0;         // y midway between sternum and spine there
 
   Ray RayOf(const Eigen::Vector2d& p) const;
+  // Returns (x, y) of the axis of horizontal rays at a height: vertical up to the sternum's lower end, and from there
+  // straight to `top_centre`, as the cage leans back.
+  Eigen::Vector2d Axis(double z) const;
+  // Returns the lower end of L1, below which the crura are fixed to the vertebrae.
+  double CrusFixedBelow() const { return lumbar[0] - vertebra_height / 2; }
 };
 
 // Fits the frame to the segmented parts. Replaces a missing landmark by a typical value and adds a message to

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <queue>
+#include <map>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/anatomy/diaphragm_shape.h"
 #include "server/anatomy/double_layer.h"
 #include "server/anatomy/plane_region.h"
 #include "server/imaging/diaphragm_rim.h"
@@ -23,44 +25,37 @@ using anatomy::Sheet;
 constexpr double kReported = 0.1;  // minimum extrapolated share of a sector for the report
 
 // Returns the area of the sheet inside the rim [mm^2], by quadrature in the plane.
-double AreaOf(const SmoothSheet& sheet, const anatomy::PlaneRegion& region) {
+double AreaOf(const anatomy::SheetDomain& sheet) {
   constexpr double kCell = 0.04;
+  const anatomy::PlaneRegion region(sheet.loops);
   const Eigen::Vector2d ex(kCell, 0), ey(0, kCell);
   double area = 0;
   for (double y = region.low().y(); y < region.high().y(); y += kCell) {
     for (double x = region.low().x(); x < region.high().x(); x += kCell) {
       const Eigen::Vector2d p(x, y);
       if (!region.Contains(p)) continue;
-      const Eigen::Vector3d at = sheet.Point(p);
-      area += (sheet.Point(p + ex) - at).cross(sheet.Point(p + ey) - at).norm();
+      const Eigen::Vector3d at = sheet.map(p);
+      area += (sheet.map(p + ex) - at).cross(sheet.map(p + ey) - at).norm();
     }
   }
   return area;
 }
 
-// Returns each vertex' distance from the rim along edges (Dijkstra) [mm].
-std::vector<double> DistanceFromRim(const Sheet& sheet) {
-  std::vector<std::vector<int>> neighbours(sheet.points.size());
-  for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      neighbours[sheet.triangles(k, t)].push_back(sheet.triangles((k + 1) % 3, t));
-      neighbours[sheet.triangles((k + 1) % 3, t)].push_back(sheet.triangles(k, t));
-    }
+// Returns the unit normal towards the thorax.
+Eigen::Vector3d NormalOf(const anatomy::SheetDomain& sheet, const Eigen::Vector2d& p) {
+  constexpr double kStep = 5e-3;
+  const Eigen::Vector2d ex(kStep, 0), ey(0, kStep);
+  return (sheet.map(p + ex) - sheet.map(p - ex)).cross(sheet.map(p + ey) - sheet.map(p - ey)).normalized();
+}
+
+// Returns how far each vertex is outside of the tendon's leaves, in disc coordinates; infinity on the wall.
+std::vector<double> OutsideTendon(const Sheet& sheet, const FittedCage& cage) {
+  std::vector<double> outside;
+  for (const Eigen::Vector3d& point : sheet.points) {
+    outside.push_back(cage.OnWall(point) ? std::numeric_limits<double>::infinity()
+                                         : anatomy::OutsideLeaves(cage.DiscCoordinates(point)));
   }
-  using Entry = std::pair<double, int>;  // distance, vertex
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  std::vector<double> distance(sheet.points.size(), std::numeric_limits<double>::infinity());
-  for (const int i : sheet.loops[0]) distance[i] = 0, queue.emplace(0, i);
-  while (!queue.empty()) {
-    const auto [so_far, i] = queue.top();
-    queue.pop();
-    if (so_far > distance[i]) continue;
-    for (const int j : neighbours[i]) {
-      const double length = so_far + (sheet.points[j] - sheet.points[i]).norm();
-      if (length < distance[j]) distance[j] = length, queue.emplace(length, j);
-    }
-  }
-  return distance;
+  return outside;
 }
 
 double TriangleArea(const Sheet& sheet, Eigen::Index t) {
@@ -68,44 +63,73 @@ double TriangleArea(const Sheet& sheet, Eigen::Index t) {
   return (b - a).cross(sheet.points[sheet.triangles(2, t)] - a).norm() / 2;
 }
 
-// Returns the distance from the rim beyond which `share` of the area lies.
-double TendonDistance(const Sheet& sheet, const std::vector<double>& distance, double share) {
-  std::vector<std::pair<double, double>> triangles;  // distance, area
+// Returns the bound of `outside` below which `share` of the area lies.
+double TendonBound(const Sheet& sheet, const std::vector<double>& outside, double share) {
+  std::vector<std::pair<double, double>> triangles;  // outside, area
   double area = 0;
   for (Eigen::Index t = 0; t < sheet.triangles.cols(); ++t) {
     const Eigen::Vector3i v = sheet.triangles.col(t);
-    triangles.emplace_back(std::min({distance[v[0]], distance[v[1]], distance[v[2]]}), TriangleArea(sheet, t));
+    triangles.emplace_back(std::max({outside[v[0]], outside[v[1]], outside[v[2]]}), TriangleArea(sheet, t));
     area += triangles.back().second;
   }
-  std::sort(triangles.rbegin(), triangles.rend());
-  double taken = 0;
-  for (const auto& [from_rim, triangle_area] : triangles) {
+  std::sort(triangles.begin(), triangles.end());
+  double taken = 0, bound = 0;
+  for (const auto& [at, triangle_area] : triangles) {
+    if (std::isinf(at) || taken >= share * area) break;
     taken += triangle_area;
-    if (taken >= share * area) return from_rim;
+    bound = at;
   }
-  return 0;
+  return bound;
 }
 
-void AddRegions(const Sheet& sheet, const CageFrame& frame, double edge_length, double tendon_share, Mesh& mesh) {
-  const std::vector<double> distance = DistanceFromRim(sheet);
-  const double tendon = TendonDistance(sheet, distance, tendon_share), band = std::max(8.0, 2.2 * edge_length);
-  const auto n = static_cast<int>(sheet.points.size());
-  for (int i = 0; i < n; ++i) {
-    const auto add = [&](const char* name) {
+using Regions = std::map<std::string, std::vector<int>>;
+
+// True where the border bridges the aorta between the crura, and is not fixed to bone.
+bool BridgesAorta(const CageFrame& frame, const Eigen::Vector3d& point) {
+  constexpr double kHalfWidth = 0.06;  // of the cage's width
+  return point.y() > frame.centre.y() && std::abs(point.x() - frame.centre.x()) < kHalfWidth * frame.width &&
+         point.z() > frame.CrusFixedBelow();
+}
+
+// Returns "tendon", "muscle", "crus-right", "crus-left", "rim" and "insertion" as vertices of the sheet.
+Regions RegionsOf(const Sheet& sheet, const CageFrame& frame, const FittedCage& cage, double tendon_share) {
+  const std::vector<double> outside = OutsideTendon(sheet, cage);
+  const double tendon = TendonBound(sheet, outside, tendon_share);
+  std::vector<bool> on_rim(sheet.points.size(), false);
+  for (const int i : sheet.loops[0]) on_rim[i] = true;
+  Regions regions;
+  for (int i = 0; i < static_cast<int>(sheet.points.size()); ++i) {
+    const Eigen::Vector3d& point = sheet.points[i];
+    const bool right = InCrus(frame, point, v1::SIDE_RIGHT), left = InCrus(frame, point, v1::SIDE_LEFT);
+    regions[outside[i] <= tendon ? "tendon" : "muscle"].push_back(i);
+    if (right) regions["crus-right"].push_back(i);
+    if (left) regions["crus-left"].push_back(i);
+    if (on_rim[i]) regions["rim"].push_back(i);
+    const bool fixed_crus = (right || left) && point.z() < frame.CrusFixedBelow();
+    if (fixed_crus || (on_rim[i] && !BridgesAorta(frame, point))) regions["insertion"].push_back(i);
+  }
+  return regions;
+}
+
+// Returns the sheet as one layer [m], with its regions.
+Mesh MiddleLayer(const Sheet& sheet, Regions regions) {
+  Mesh mesh;
+  mesh.vertices.resize(3, static_cast<Eigen::Index>(sheet.points.size()));
+  for (size_t i = 0; i < sheet.points.size(); ++i) mesh.vertices.col(static_cast<Eigen::Index>(i)) = sheet.points[i];
+  mesh.vertices *= kMillimetre;
+  mesh.triangles = sheet.triangles;
+  mesh.regions = std::move(regions);
+  return mesh;
+}
+
+// Adds the regions to both layers.
+void AddRegions(const Regions& regions, Mesh& mesh) {
+  for (const auto& [name, vertices] : regions) {
+    for (const int i : vertices) {
       mesh.regions[name].push_back(anatomy::UpperVertex(i));
       mesh.regions[name].push_back(anatomy::LowerVertex(i));
-    };
-    if (distance[i] >= tendon) {
-      add("tendon");
-    } else if (InCrus(frame, sheet.points[i], v1::SIDE_RIGHT)) {
-      add("crus-right");
-    } else if (InCrus(frame, sheet.points[i], v1::SIDE_LEFT)) {
-      add("crus-left");
-    } else if (distance[i] < band) {
-      add("rim");
     }
   }
-  for (auto& [name, region] : mesh.regions) std::sort(region.begin(), region.end());
 }
 
 std::string SectorName(int sector) {
@@ -147,7 +171,9 @@ v1::DerivedDiaphragm ReportOf(const Sheet& sheet, const SmoothSheet& smooth) {
 // FAILED_PRECONDITION if too little of the sheet was observed to fit it.
 absl::Status CheckEvidence(const SheetEvidence& evidence) {
   constexpr double kFewest = 0.05;  // share of the rays
-  const auto missing = std::count(evidence.source.begin(), evidence.source.end(), Source::kNone);
+  const auto missing = std::count_if(evidence.source.begin(), evidence.source.end(), [](Source source) {
+    return source == Source::kNone || source == Source::kOnWall;
+  });
   const double observed = 1 - static_cast<double>(missing) / static_cast<double>(evidence.source.size());
   if (observed >= kFewest) return absl::OkStatus();
   return absl::FailedPreconditionError(
@@ -180,33 +206,58 @@ bool IsWhole(const Sheet& sheet) {
   return used && !sheet.loops.empty() && sheet.triangles.cols() > 0;
 }
 
+using EdgeLength = std::function<double(const Eigen::Vector3d&)>;
+
+// Returns edge lengths of the middle layer: 0.6 of `usual` where it folds over the spine and in the crura.
+EdgeLength MiddleEdges(const CageFrame& frame, double usual) {
+  return [&frame, usual](const Eigen::Vector3d& point) {
+    constexpr double kFine = 0.6, kFineWithin = 0.1, kUsualBeyond = 0.22;  // of the width, from the spine's front
+    const double away = (point.head<2>() - Eigen::Vector2d(frame.centre.x(), frame.spine_front)).norm() / frame.width;
+    const double t = std::clamp((away - kFineWithin) / (kUsualBeyond - kFineWithin), 0.0, 1.0);
+    return usual * (kFine + (1 - kFine) * t * t * (3 - 2 * t));
+  };
+}
+
+// FAILED_PRECONDITION if the mesh has no triangles, or a vertex of its rim is not a corner of one.
+absl::StatusOr<Sheet> MeshWhole(anatomy::SheetDomain& domain, const EdgeLength& edge_length) {
+  domain.edge_length = edge_length;
+  Sheet sheet = anatomy::MeshSheet(domain);
+  if (IsWhole(sheet)) return sheet;
+  return absl::FailedPreconditionError(
+      "cannot derive a diaphragm: its rim crosses itself; check the labels of ribs and vertebrae");
+}
+
+// Returns the edge length with which both layers together have this many vertices [mm].
+double EdgeLengthFor(int vertices, double area) {
+  // A hexagonal lattice has one vertex per sqrt(3)/2 squared edge lengths; MeshSheet gives 0.855 times as many.
+  constexpr double kOfLattice = 0.855;
+  return std::sqrt(kOfLattice * area / (vertices / 2.0) * 2 / std::sqrt(3.0));
+}
+
 }  // namespace
 
 absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, const std::vector<Part>& parts,
-                                                 const CageFrame& frame, const DiaphragmOptions& options,
-                                                 Messages& fallbacks) {
-  const SheetEvidence evidence = CollectEvidence(volume, parts, frame);
+                                                 const CageFrame& frame, const FittedCage& cage,
+                                                 const DiaphragmOptions& options, Messages& fallbacks) {
+  const SheetEvidence evidence = CollectEvidence(volume, parts, frame, cage);
   if (absl::Status status = CheckEvidence(evidence); !status.ok()) return status;
   const SmoothSheet smooth(frame, evidence);
   anatomy::SheetDomain domain;
   domain.loops = {FindRim(volume, parts, frame, smooth, fallbacks)};
-  // A hexagonal lattice has one vertex per sqrt(3)/2 squared edge lengths; MeshSheet gives 0.855 times as many.
-  constexpr double kOfLattice = 0.855;
-  const double area = AreaOf(smooth, anatomy::PlaneRegion(domain.loops));
+  domain.map = [&](const Eigen::Vector2d& p) { return cage.Inside(smooth.Point(p)); };
+  const double area = AreaOf(domain);
   if (absl::Status status = CheckSize(smooth, domain.loops[0], area); !status.ok()) return status;
-  const double edge_length = std::sqrt(kOfLattice * area / (options.vertices / 2.0) * 2 / std::sqrt(3.0));
-  domain.map = [&smooth](const Eigen::Vector2d& p) { return smooth.Point(p); };
-  domain.edge_length = [edge_length](const Eigen::Vector3d&) { return edge_length; };
-  const Sheet sheet = anatomy::MeshSheet(domain);
-  if (!IsWhole(sheet)) {
-    return absl::FailedPreconditionError(
-        "cannot derive a diaphragm: its rim crosses itself; check the labels of ribs and vertebrae");
-  }
+  const double seen_edges = EdgeLengthFor(options.vertices, area);
+  const auto seen = MeshWhole(domain, [seen_edges](const Eigen::Vector3d&) { return seen_edges; });
+  if (!seen.ok()) return seen.status();
+  const auto middle = MeshWhole(domain, MiddleEdges(frame, options.middle_edge_length));
+  if (!middle.ok()) return middle.status();
   DerivedDiaphragm derived;
-  derived.mesh = anatomy::DoubleLayer(sheet, [&smooth](const Eigen::Vector2d& p) { return smooth.Normal(p); });
+  derived.mesh = anatomy::DoubleLayer(*seen, [&domain](const Eigen::Vector2d& p) { return NormalOf(domain, p); });
   derived.mesh.vertices *= kMillimetre;
-  AddRegions(sheet, frame, edge_length, options.tendon_share, derived.mesh);
-  derived.report = ReportOf(sheet, smooth);
+  AddRegions(RegionsOf(*seen, frame, cage, options.tendon_share), derived.mesh);
+  derived.middle = MiddleLayer(*middle, RegionsOf(*middle, frame, cage, options.tendon_share));
+  derived.report = ReportOf(*seen, smooth);
   return derived;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "absl/strings/str_cat.h"
@@ -55,6 +56,21 @@ absl::Status AddSurfaces(const LabelVolume& volume, const std::vector<Part>& par
   return absl::OkStatus();
 }
 
+// Adds the diaphragm, what is simulated of it, and the wall, before the others.
+void AddDerived(DerivedDiaphragm diaphragm, const FittedCage& cage, Patient& patient) {
+  v1::Anatomy sheet, inner_cage;
+  sheet.set_structure(v1::STRUCTURE_DIAPHRAGM);
+  inner_cage.set_structure(v1::STRUCTURE_INNER_CAGE);
+  Mesh wall = cage.Tube();
+  wall.vertices *= kMillimetre;
+  std::vector<PatientBody> bodies;
+  bodies.push_back({"diaphragm", sheet, std::move(diaphragm.mesh)});
+  bodies.push_back({kMiddleBody, sheet, std::move(diaphragm.middle)});
+  bodies.push_back({kWallBody, inner_cage, std::move(wall)});
+  patient.bodies.insert(patient.bodies.begin(), std::make_move_iterator(bodies.begin()),
+                        std::make_move_iterator(bodies.end()));
+}
+
 void ReportRibs(const CageFrame& frame, Patient& patient) {
   constexpr double kDegrees = 180 / std::numbers::pi;
   for (const PatientBody& body : patient.bodies) {
@@ -84,12 +100,12 @@ absl::StatusOr<Patient> MakePatient(const LabelVolume& volume, const v1::LabelMa
   absl::Status status = AddSurfaces(volume, *parts, options, progress, patient);
   if (!status.ok()) return status;
   if (!progress(1 - kDiaphragmsShare, "diaphragm")) return absl::CancelledError("making the patient was cancelled");
-  absl::StatusOr<DerivedDiaphragm> diaphragm = DeriveDiaphragm(volume, *parts, *frame, options.diaphragm, fallbacks);
+  const FittedCage cage(volume, *parts, *frame, fallbacks);
+  absl::StatusOr<DerivedDiaphragm> diaphragm =
+      DeriveDiaphragm(volume, *parts, *frame, cage, options.diaphragm, fallbacks);
   if (!diaphragm.ok()) return diaphragm.status();
   *patient.report.mutable_diaphragm() = diaphragm->report;
-  v1::Anatomy anatomy;
-  anatomy.set_structure(v1::STRUCTURE_DIAPHRAGM);
-  patient.bodies.insert(patient.bodies.begin(), {"diaphragm", anatomy, std::move(diaphragm->mesh)});
+  AddDerived(*std::move(diaphragm), cage, patient);
   patient.report.set_moved_left_mm(-frame->centre.x());
   for (PatientBody& body : patient.bodies) body.mesh.vertices.row(0).array() -= kMillimetre * frame->centre.x();
   ReportRibs(*frame, patient);

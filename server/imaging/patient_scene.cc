@@ -6,23 +6,19 @@
 #include <set>
 
 #include "absl/strings/str_cat.h"
+#include "server/anatomy/inner_cage.h"
+#include "server/anatomy/rib.h"
 #include "server/imaging/rib_axis.h"
 #include "server/mesh/units.h"
+#include "server/schema/schema.h"
 
 namespace phrenic::imaging {
 namespace {
 
 using Names = google::protobuf::RepeatedPtrField<std::string>;
 
-constexpr double kPatternWidth = 262;  // of the generated thorax [mm]
-
-// The pattern is tuned for the generated sheet, which has openings and another tendon. These factors on its values
-// bring the quiet breath of the three phantoms in the acceptance tests into the published ranges.
-constexpr double kMuscle = 0.75, kTendon = 2.3;       // stiffness
-constexpr double kPullRight = 0.8, kPullLeft = 1.07;  // of the action lines, for a sheet of this area:
-constexpr double kSheetArea = 0.1045;                 // the adult phantom's [m^2]
-constexpr double kRibs = 1.15;                        // how far ribs turn in a quiet breath
-constexpr double kBehindMiddle = 6e-3;                // of the action lines, in the pattern's size [m]
+constexpr double kPatternWidth = 262;   // of the generated thorax [mm]
+constexpr double kFurthestSeen = 5e-3;  // vertex of the seen sheet from its middle, which folds sharply at the wall [m]
 
 const char* LayerOf(v1::Structure structure) {
   switch (structure) {
@@ -32,6 +28,8 @@ const char* LayerOf(v1::Structure structure) {
       return "ribs";
     case v1::STRUCTURE_COSTAL_CARTILAGE:
       return "cartilages";
+    case v1::STRUCTURE_INNER_CAGE:
+      return "mechanics";
     case v1::STRUCTURE_VERTEBRA:
       return "spine";
     case v1::STRUCTURE_LUNG:
@@ -43,8 +41,6 @@ const char* LayerOf(v1::Structure structure) {
 
 v1::Role RoleOf(v1::Structure structure) {
   switch (structure) {
-    case v1::STRUCTURE_DIAPHRAGM:
-      return v1::ROLE_DEFORMABLE;
     case v1::STRUCTURE_VERTEBRA:
       return v1::ROLE_AT_REST;
     case v1::STRUCTURE_COSTAL_CARTILAGE:
@@ -55,20 +51,25 @@ v1::Role RoleOf(v1::Structure structure) {
   }
 }
 
-void AddBodies(const std::vector<PatientBody>& bodies, const v1::Body& sheet, double mass, const std::string& folder,
-               v1::Scene& scene) {
+v1::Body BodyOf(const PatientBody& from, const v1::Scene& pattern) {
+  const auto found = std::find_if(pattern.bodies().begin(), pattern.bodies().end(),
+                                  [&](const v1::Body& body) { return body.name() == from.name; });
+  if (found != pattern.bodies().end() && !found->has_for_each()) return *found;
+  v1::Body body;
+  body.set_name(from.name);
+  body.set_layer(LayerOf(from.anatomy.structure()));
+  body.set_role(RoleOf(from.anatomy.structure()));
+  return body;
+}
+
+void AddBodies(const std::vector<PatientBody>& bodies, const v1::Scene& pattern, double scale,
+               const std::string& folder, v1::Scene& scene) {
   scene.clear_bodies();
   for (const PatientBody& from : bodies) {
-    v1::Body& body = *scene.add_bodies();
-    body.set_name(from.name);
-    body.set_layer(LayerOf(from.anatomy.structure()));
-    body.set_role(RoleOf(from.anatomy.structure()));
+    v1::Body& body = *scene.add_bodies() = BodyOf(from, pattern);
     *body.mutable_anatomy() = from.anatomy;
     body.mutable_file()->set_path(absl::StrCat(folder, "/", from.name, ".msh"));
-    if (body.role() != v1::ROLE_DEFORMABLE) continue;
-    body.set_mass(mass);
-    body.set_mass_lumping(sheet.mass_lumping());
-    *body.mutable_regions() = sheet.regions();
+    if (body.has_mass()) body.set_mass(body.mass() * scale * scale);
   }
 }
 
@@ -77,39 +78,35 @@ void KeepKnown(const std::set<std::string>& layers, Names* names) {
                names->end());
 }
 
+// Returns the angle of an axis from the midsagittal plane [rad]; 0 points backwards.
+double FromMidplane(const Eigen::Vector3d& axis) { return std::atan2(std::abs(axis.x()), axis.y()); }
+
+// Returns how much further from the midsagittal plane the neck of a rib is than that of the generated one [rad].
+double NeckTurn(const PatientBody& rib, double scale) {
+  const anatomy::Curve path = anatomy::LeftRibPath(rib.anatomy.number());
+  return FromMidplane(FindRibNeck(rib.mesh, scale).Axis()) - FromMidplane(path[2] - path[0]);
+}
+
 // A motion of its own for each rib: the language's end states go by number, and the two sides differ.
 void AddRib(const PatientBody& rib, const v1::Ribs& pattern, double scale, v1::Scene& scene) {
   for (const v1::RibEndState& usual : pattern.end_states()) {
     if (usual.number() != rib.anatomy.number()) continue;
-    const Eigen::Vector3d axis = FindRibNeck(rib.mesh, scale).Axis();
     const double angle = std::hypot(usual.pump_degrees(), usual.bucket_degrees());
-    const double level = std::max(1e-6, std::hypot(axis.x(), axis.y()));
+    const double turned = std::atan2(usual.pump_degrees(), usual.bucket_degrees()) + NeckTurn(rib, scale);
     v1::Motion& motion = *scene.add_motions();
     motion.set_name(absl::StrCat("turn:", rib.name));
-    motion.mutable_ribs()->add_bodies(rib.name);
-    motion.mutable_ribs()->set_quiet_state(kRibs * pattern.quiet_state());
-    v1::RibEndState& end = *motion.mutable_ribs()->add_end_states();
+    v1::Ribs& ribs = *motion.mutable_ribs() = pattern;
+    ribs.clear_bodies();
+    ribs.clear_end_states();
+    ribs.add_bodies(rib.name);
+    v1::RibEndState& end = *ribs.add_end_states();
     end.set_number(usual.number());
-    end.set_pump_degrees(angle * std::abs(axis.x()) / level);
-    end.set_bucket_degrees(angle * axis.y() / level);
+    end.set_pump_degrees(angle * std::sin(turned));
+    end.set_bucket_degrees(angle * std::cos(turned));
   }
 }
 
-void AddMotions(const v1::Scene& pattern, const std::vector<PatientBody>& bodies, const std::set<std::string>& layers,
-                double scale, v1::Scene& scene) {
-  scene.clear_motions();
-  for (const v1::Motion& motion : pattern.motions()) {
-    if (motion.has_ribs()) {
-      for (const PatientBody& body : bodies) {
-        if (body.anatomy.structure() == v1::STRUCTURE_RIB) AddRib(body, motion.ribs(), scale, scene);
-      }
-    } else if (motion.has_sternum() && layers.contains("sternum")) {
-      *scene.add_motions() = motion;
-    } else if (motion.has_skin() && motion.skin().bodies(0) == "lungs") {
-      *scene.add_motions() = motion;
-      KeepKnown(layers, scene.mutable_motions(scene.motions_size() - 1)->mutable_skin()->mutable_drivers());
-    }
-  }
+void AddCartilages(const std::set<std::string>& layers, v1::Scene& scene) {
   if (!layers.contains("cartilages")) return;
   v1::Skin& skin = *scene.add_motions()->mutable_skin();
   skin.add_bodies("cartilages");
@@ -117,39 +114,109 @@ void AddMotions(const v1::Scene& pattern, const std::vector<PatientBody>& bodies
   if (layers.contains("sternum")) skin.add_drivers("sternum");
 }
 
-double Area(const Mesh& mesh) {
-  double area = 0;
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    const Eigen::Vector3d a = mesh.vertices.col(mesh.triangles(0, t)), b = mesh.vertices.col(mesh.triangles(1, t));
-    area += (b - a).cross(mesh.vertices.col(mesh.triangles(2, t)) - a).norm() / 2;
-  }
-  return area;
+// Adds a motion of the pattern. Cartilages, of which the patient may have others, are skinned by AddCartilages.
+void AddMotion(const v1::Motion& motion, const std::set<std::string>& known, v1::Scene& scene) {
+  if (motion.has_for_each()) return;
+  if (motion.has_sternum() && !known.contains("sternum")) return;
+  if (motion.has_skin() && !known.contains(motion.skin().bodies(0))) return;
+  v1::Motion& added = *scene.add_motions() = motion;
+  if (!added.has_skin()) return;
+  KeepKnown(known, added.mutable_skin()->mutable_drivers());
+  if (added.skin().mode() == v1::SKIN_MODE_SHEET) added.mutable_skin()->set_thickness(kFurthestSeen);
 }
 
-void AdaptForces(const Mesh& diaphragm, const CageFrame& frame, const std::set<std::string>& layers, v1::Scene& scene) {
-  const double scale = ScaleOf(frame);
-  const double pull = std::sqrt(Area(diaphragm) / 2 / kSheetArea);  // of two layers
-  const Eigen::Vector3d low = diaphragm.vertices.rowwise().minCoeff(), high = diaphragm.vertices.rowwise().maxCoeff();
+// `known` has the names of the patient's layers and bodies.
+void AddMotions(const v1::Scene& pattern, const std::vector<PatientBody>& bodies, const std::set<std::string>& known,
+                const CageFrame& frame, v1::Scene& scene) {
+  scene.clear_motions();
+  for (const v1::Motion& motion : pattern.motions()) {
+    if (!motion.has_ribs()) {
+      AddMotion(motion, known, scene);
+      if (motion.has_sternum()) AddCartilages(known, scene);
+      continue;
+    }
+    for (const PatientBody& body : bodies) {
+      if (body.anatomy.structure() == v1::STRUCTURE_RIB) AddRib(body, motion.ribs(), ScaleOf(frame), scene);
+    }
+  }
+  for (v1::Motion& motion : *scene.mutable_motions()) {
+    if (!motion.has_insertion()) continue;
+    motion.mutable_insertion()->mutable_apex()->set_x(0);
+    motion.mutable_insertion()->mutable_apex()->set_y(kMillimetre * frame.centre.y());
+    motion.mutable_insertion()->mutable_apex()->set_z(kMillimetre * frame.lumbar[2]);
+  }
+}
+
+// Returns the volume inside a tube of horizontal rings [m^3], by cones from its middle.
+double VolumeInside(const Mesh& tube) {
+  const Eigen::Vector3d middle = tube.vertices.rowwise().mean();
+  const auto cone = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+    return (a - middle).dot((b - middle).cross(c - middle)) / 6;
+  };
+  double volume = 0;
+  for (const auto t : tube.triangles.colwise()) {
+    volume += cone(tube.vertices.col(t[0]), tube.vertices.col(t[1]), tube.vertices.col(t[2]));
+  }
+  for (const auto& [name, outwards] : {std::pair("bottom", -1), std::pair("top", 1)}) {
+    const std::vector<int>& ring = tube.regions.at(name);
+    const Eigen::Vector3d lid = tube.vertices(Eigen::all, ring).rowwise().mean();
+    for (size_t i = 0; i < ring.size(); ++i) {
+      volume += outwards * cone(lid, tube.vertices.col(ring[i]), tube.vertices.col(ring[(i + 1) % ring.size()]));
+    }
+  }
+  return volume;
+}
+
+// Returns the volume inside the patient's wall relative to that of the generated one; 1 without a wall.
+double RelativeVolume(const std::vector<PatientBody>& bodies) {
+  const double generated = std::pow(kMillimetre, 3) * VolumeInside(anatomy::InnerCage(8));
+  for (const PatientBody& body : bodies) {
+    if (body.name == kWallBody) return VolumeInside(body.mesh) / generated;
+  }
+  return 1;
+}
+
+void ScaleLungs(double volume, v1::LungPair& lungs) {
+  schema::FillDefaults(&lungs);
+  lungs.set_room(volume * lungs.room());
+  lungs.set_rest_volume(volume * lungs.rest_volume());
+  lungs.set_resistance(lungs.resistance() / volume);
+  lungs.set_peripheral_resistance(lungs.peripheral_resistance() / volume);
+  lungs.set_mediastinal_compliance(volume * lungs.mediastinal_compliance());
+  lungs.set_mediastinal_inertia(lungs.mediastinal_inertia() / volume);
+}
+
+void ScaleAbdomen(double volume, v1::Abdomen& abdomen) {
+  schema::FillDefaults(&abdomen);
+  abdomen.set_compliance(volume * abdomen.compliance());
+  abdomen.set_stiffening_volume_out(volume * abdomen.stiffening_volume_out());
+  abdomen.set_stiffening_volume_in(volume * abdomen.stiffening_volume_in());
+  abdomen.set_resistance(abdomen.resistance() / volume);
+}
+
+// Scales tensions with the size, so that the same pressures bend the sheet alike. The patient's mesh has no openings:
+// no muscle is passive tissue.
+void ScaleMuscle(double size, v1::Muscle& muscle) {
+  schema::FillDefaults(&muscle);
+  muscle.clear_passive_regions();
+  muscle.set_thickness(size * muscle.thickness());
+  muscle.set_resting_tension(size * muscle.resting_tension());
+  muscle.set_resting_tension_across(size * muscle.resting_tension_across());
+  muscle.set_passive_stiffness(size * muscle.passive_stiffness());
+  muscle.set_tendon_tension(size * muscle.tendon_tension());
+  muscle.set_tendon_stiffness(size * muscle.tendon_stiffness());
+}
+
+void AdaptForces(double size, double volume, v1::Scene& scene) {
   for (v1::Force& force : *scene.mutable_forces()) {
-    if (force.has_attachment()) {
-      KeepKnown(layers, force.mutable_attachment()->mutable_anchors());
-      force.mutable_attachment()->set_radius(force.attachment().radius() * std::max(1.0, scale));
+    if (force.has_muscle()) ScaleMuscle(size, *force.mutable_muscle());
+    if (force.has_thorax_pressures()) {
+      ScaleLungs(volume, *force.mutable_thorax_pressures()->mutable_lungs());
+      ScaleAbdomen(volume, *force.mutable_thorax_pressures()->mutable_abdomen());
     }
-    if (force.has_springs()) {
-      const double share = force.springs().region() == "tendon" ? kTendon : kMuscle;
-      force.mutable_springs()->set_stiffness(share * force.springs().stiffness());
-    }
-    if (!force.has_action_line()) continue;
-    v1::ActionLine& line = *force.mutable_action_line();
-    const double side = line.origin().x() < 0 ? -1 : 1;
-    line.mutable_origin()->set_x(side * 0.21 * kMillimetre * frame.width);
-    line.mutable_origin()->set_y((low.y() + high.y()) / 2 + kBehindMiddle * scale);
-    line.mutable_origin()->set_z(high.z());
-    line.set_radius(line.radius() * scale);
-    const double share = (side < 0 ? kPullRight : kPullLeft) * pull;
-    line.set_force(share * line.force());
-    line.set_lung_load(share * line.lung_load());
-    line.set_air_load(share * line.air_load());
+    if (!force.has_chest_wall()) continue;
+    schema::FillDefaults(force.mutable_chest_wall());
+    force.mutable_chest_wall()->set_compliance(volume * force.chest_wall().compliance());
   }
 }
 
@@ -188,16 +255,15 @@ v1::Scene PatientScene(const v1::Scene& pattern, const std::vector<PatientBody>&
   scene.set_name(name);
   scene.set_title(absl::StrCat("Thorax of ", name, ", from a label volume"));
   scene.set_description("Made by `phrenic patient`; the report beside it says where it had to guess.");
-  std::set<std::string> layers;
-  for (const PatientBody& body : bodies) layers.insert(LayerOf(body.anatomy.structure()));
+  std::set<std::string> known;
+  for (const PatientBody& body : bodies) known.insert({body.name, LayerOf(body.anatomy.structure())});
   auto& shown = *scene.mutable_layers();
-  shown.erase(std::remove_if(shown.begin(), shown.end(),
-                             [&](const v1::Layer& layer) { return !layers.contains(layer.name()); }),
-              shown.end());
-  const double scale = ScaleOf(frame);
-  AddBodies(bodies, pattern.bodies(0), pattern.bodies(0).mass() * scale * scale, name, scene);
-  AddMotions(pattern, bodies, layers, scale, scene);
-  AdaptForces(bodies.front().mesh, frame, layers, scene);
+  shown.erase(
+      std::remove_if(shown.begin(), shown.end(), [&](const v1::Layer& layer) { return !known.contains(layer.name()); }),
+      shown.end());
+  AddBodies(bodies, pattern, ScaleOf(frame), name, scene);
+  AddMotions(pattern, bodies, known, frame, scene);
+  AdaptForces(ScaleOf(frame), RelativeVolume(bodies), scene);
   AddProbes(bodies, scene);
   return scene;
 }

@@ -10,14 +10,21 @@
 
 namespace phrenic::imaging {
 
-// Returns the width of the cage relative to the generated thorax, for which the pattern is tuned.
+// Names of the bodies that are derived for mechanics, as in the pattern.
+inline constexpr char kMiddleBody[] = "diaphragm-middle", kWallBody[] = "chest-wall";
+
+// Returns the width of the cage relative to the generated thorax, to which the pattern belongs.
 double ScaleOf(const CageFrame& frame);
 
-// Returns the pattern with the patient's bodies in its layers. Each rib rotates about the horizontal component of its
-// own neck axis by the pattern's angle for its number (pump and bucket rotation); cartilages are skinned to ribs and
-// sternum, lungs as in the pattern. Action lines point down through the two domes, midway between front and back.
-// Lengths are scaled by ScaleOf, forces by the square root of the sheet's area, and some by constants of the derived
-// sheet (see patient_scene.cc). Elements of layers that the patient does not have are left out.
+// Returns the pattern, the scene `thorax`, with the patient's bodies in its layers. Bodies of the pattern with a
+// patient's body of the same name keep all but their shape. Each rib rotates by the pattern's angle for its
+// number, about the pattern's axis turned in the horizontal plane as far as the neck differs from that of the generated
+// rib, moved by the two coordinates of the cage
+// that all share; cartilages are skinned to ribs and sternum, the wall, the lungs and the seen diaphragm as in the
+// pattern. Pressures are those of the pattern; the muscle's thickness,
+// tensions and stiffnesses are multiplied by ScaleOf; volumes, compliances and inverse resistances are multiplied
+// by the volume inside the wall relative to the generated one, the simulated mass by the square of ScaleOf. Elements of
+// layers that the patient does not have are left out.
 v1::Scene PatientScene(const v1::Scene& pattern, const std::vector<PatientBody>& bodies, const CageFrame& frame,
                        const std::string& name);
 

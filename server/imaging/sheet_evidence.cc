@@ -83,9 +83,17 @@ Observation CastRay(const LabelVolume& volume, const std::vector<Tissue>& tissue
   return {};
 }
 
+// Returns the observation of a horizontal ray, which meets the sheet on the wall if it meets no organ before.
+Observation OnWall(const Observation& observed, const Ray& ray, const FittedCage& cage) {
+  if (observed.source != Source::kOnBone && observed.source != Source::kNone) return observed;
+  const double azimuth = std::atan2(ray.direction.x(), -ray.direction.y());
+  return {observed.source == Source::kNone ? Source::kOnWall : Source::kOnBone, cage.Radius(azimuth, ray.origin.z())};
+}
+
 }  // namespace
 
-SheetEvidence CollectEvidence(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame) {
+SheetEvidence CollectEvidence(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,
+                              const FittedCage& cage) {
   const std::vector<Tissue> tissues = ClassifyVoxels(volume, parts, frame);
   const Eigen::Affine3d to_voxel = volume.to_patient.inverse();
   SheetEvidence evidence;
@@ -96,7 +104,9 @@ SheetEvidence CollectEvidence(const LabelVolume& volume, const std::vector<Part>
     for (int i = 0; i < kRays; ++i) {
       const Eigen::Vector2d p = evidence.Plane(i, j);
       if (p.norm() > kPlaneReach) continue;
-      const Observation observation = CastRay(volume, tissues, to_voxel, frame.RayOf(p));
+      const Ray ray = frame.RayOf(p);
+      Observation observation = CastRay(volume, tissues, to_voxel, ray);
+      if (p.norm() > 1) observation = OnWall(observation, ray, cage);
       evidence.source[evidence.Index(i, j)] = observation.source;
       evidence.depth[evidence.Index(i, j)] = observation.depth;
     }

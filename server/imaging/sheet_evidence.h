@@ -2,13 +2,13 @@
 #ifndef PHRENIC_SERVER_IMAGING_SHEET_EVIDENCE_H_
 #define PHRENIC_SERVER_IMAGING_SHEET_EVIDENCE_H_
 
-#include "server/imaging/cage_frame.h"
+#include "server/imaging/fitted_cage.h"
 
 namespace phrenic::imaging {
 
-// What determined the sheet's depth: nothing, organs on both sides, an organ on one side, a bone, or the diaphragm's
-// own label.
-enum class Source { kNone, kBetween, kBesideOne, kOnBone, kLabel };
+// What determined the sheet's depth: nothing, organs on both sides, an organ on one side, a bone, the diaphragm's own
+// label, or the wall where there is no bone.
+enum class Source { kNone, kBetween, kBesideOne, kOnBone, kLabel, kOnWall };
 
 // A square grid of rays over |p.x|, |p.y| <= kPlaneReach.
 struct SheetEvidence {
@@ -28,10 +28,12 @@ struct SheetEvidence {
 //   kLabel:     the middle of the labelled diaphragm;
 //   kBetween:   halfway between an abdominal organ and lung or heart at most 14 mm apart;
 //   kBesideOne: 3.5 mm below a lung or the heart with no organ near below it;
-//   kOnBone:    4 mm inside a bone's inner face.
+//   kOnBone:    on the wall, if the ray is horizontal; else 4 mm inside a bone's inner face;
+//   kOnWall:    on the wall, where a horizontal ray meets nothing.
 // Of the vertebrae only T11 and below count, of sternum and cartilages only the part near the sternum's lower end;
 // above, the mediastinum lies between.
-SheetEvidence CollectEvidence(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame);
+SheetEvidence CollectEvidence(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,
+                              const FittedCage& cage);
 
 }  // namespace phrenic::imaging
 

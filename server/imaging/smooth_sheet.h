@@ -10,7 +10,7 @@ namespace phrenic::imaging {
 
 // A smooth depth r(p) along the rays of a frame. Minimises over the grid
 //   sum w (r - observed)^2 + b sum (Laplacian r)^2
-// (a thin plate; Wahba, Spline Models for Observational Data, 1990), which extrapolates where nothing was observed.
+// (ThinPlate), which extrapolates where nothing was observed.
 // Four rounds of reweighting with w = 1 / (1 + (residual / 6 mm)^2) suppress outliers. Immutable, thread-safe.
 class SmoothSheet {
  public:
@@ -18,10 +18,10 @@ class SmoothSheet {
 
   double Depth(const Eigen::Vector2d& p) const;  // [mm], a cubic B-spline (C2)
   Eigen::Vector3d Point(const Eigen::Vector2d& p) const { return frame_.RayOf(p).At(Depth(p)); }  // [mm]
-  Eigen::Vector3d Normal(const Eigen::Vector2d& p) const;  // unit, towards the thorax
   // Returns the outermost p with this azimuth (a unit vector) whose point has height z [mm].
   Eigen::Vector2d AtHeight(const Eigen::Vector2d& azimuth, double z) const;
-  // Returns the source of the nearest evidence within 10 mm of p that agrees with the sheet to 8 mm; else kNone.
+  // Returns the source of the nearest evidence within 10 mm of p that agrees with the sheet to 8 mm, the wall
+  // alone left out; else kNone.
   Source SourceAt(const Eigen::Vector2d& p) const;
 
  private:

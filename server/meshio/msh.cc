@@ -2,6 +2,8 @@
 // and passes binary files and version 4.1 on to msh_blocks.cc.
 #include <algorithm>
 #include <cstdint>
+#include <set>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "server/meshio/formats.h"
@@ -154,17 +156,72 @@ std::vector<int> RegionOfTriangles(const Mesh& mesh) {
   return region_of;
 }
 
-void AppendPhysicalNames(std::string& text, const Mesh& mesh) {
+// The points of a region that its triangles alone would not bring back: region number, vertex.
+using RegionPoints = std::vector<std::pair<int, int>>;
+
+RegionPoints PointsOfRegions(const Mesh& mesh, const std::vector<int>& region_of) {
+  RegionPoints points;
+  int number = 0;
+  for (const auto& [name, region] : mesh.regions) {
+    ++number;
+    std::vector<bool> covered(static_cast<std::size_t>(mesh.vertices.cols()), false);
+    for (std::size_t t = 0; t < region_of.size(); ++t) {
+      if (region_of[t] != number) continue;
+      for (const int corner : mesh.triangles.col(static_cast<Eigen::Index>(t))) covered[corner] = true;
+    }
+    for (const int vertex : region) {
+      if (!covered[static_cast<std::size_t>(vertex)]) points.emplace_back(number, vertex);
+    }
+  }
+  return points;
+}
+
+// A region is a physical surface, and a physical point as well if it has points of its own.
+void AppendPhysicalNames(std::string& text, const Mesh& mesh, const RegionPoints& points) {
   if (mesh.regions.empty()) return;
-  absl::StrAppend(&text, "$PhysicalNames\n", mesh.regions.size(), "\n");
+  std::set<int> with_points;
+  for (const auto& [number, vertex] : points) with_points.insert(number);
+  absl::StrAppend(&text, "$PhysicalNames\n", mesh.regions.size() + with_points.size(), "\n");
   int number = 0;
   for (const auto& [name, region] : mesh.regions) {
     std::string quotable = name;
     const auto breaks = [](char c) { return c == '"' || static_cast<unsigned char>(c) < ' '; };
     std::replace_if(quotable.begin(), quotable.end(), breaks, '_');
     absl::StrAppend(&text, "2 ", ++number, " \"", quotable, "\"\n");
+    if (with_points.contains(number)) absl::StrAppend(&text, "0 ", number, " \"", quotable, "\"\n");
   }
   text += "$EndPhysicalNames\n";
+}
+
+void AppendNodes(std::string& text, const Mesh& mesh) {
+  absl::StrAppend(&text, "$Nodes\n", mesh.vertices.cols(), "\n");
+  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) {
+    absl::StrAppend(&text, i + 1);
+    for (const double coordinate : mesh.vertices.col(i)) AppendNumber(text, coordinate);
+    text += "\n";
+  }
+  text += "$EndNodes\n";
+}
+
+void AppendElements(std::string& text, const Mesh& mesh, const std::vector<int>& region_of,
+                    const RegionPoints& points) {
+  const bool network = mesh.triangles.cols() == 0;
+  const Eigen::Index shapes = network ? mesh.edges.cols() : mesh.triangles.cols();
+  absl::StrAppend(&text, "$Elements\n", shapes + static_cast<Eigen::Index>(points.size()), "\n");
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    const int region = region_of[static_cast<std::size_t>(t)];
+    absl::StrAppend(&text, t + 1, " ", kMshTriangle, " 2 ", region, " ", region + 1);
+    for (const int corner : mesh.triangles.col(t)) absl::StrAppend(&text, " ", corner + 1);
+    text += "\n";
+  }
+  for (Eigen::Index e = 0; network && e < mesh.edges.cols(); ++e) {
+    absl::StrAppend(&text, e + 1, " ", kMshLine, " 2 0 1 ", mesh.edges(0, e) + 1, " ", mesh.edges(1, e) + 1, "\n");
+  }
+  Eigen::Index number = shapes;
+  for (const auto& [region, vertex] : points) {
+    absl::StrAppend(&text, ++number, " ", kMshPoint, " 2 ", region, " ", region + 1, " ", vertex + 1, "\n");
+  }
+  text += "$EndElements\n";
 }
 
 }  // namespace
@@ -182,27 +239,13 @@ absl::StatusOr<Surface> ParseMsh(std::string_view name, std::string_view bytes) 
 }
 
 absl::StatusOr<std::string> WriteMsh(const Mesh& mesh) {
-  std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
-  AppendPhysicalNames(text, mesh);
-  absl::StrAppend(&text, "$Nodes\n", mesh.vertices.cols(), "\n");
-  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) {
-    absl::StrAppend(&text, i + 1);
-    for (const double coordinate : mesh.vertices.col(i)) AppendNumber(text, coordinate);
-    text += "\n";
-  }
-  const bool network = mesh.triangles.cols() == 0;
-  absl::StrAppend(&text, "$EndNodes\n$Elements\n", network ? mesh.edges.cols() : mesh.triangles.cols(), "\n");
   const std::vector<int> region_of = RegionOfTriangles(mesh);
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    const int region = region_of[static_cast<std::size_t>(t)];
-    absl::StrAppend(&text, t + 1, " ", kMshTriangle, " 2 ", region, " ", region + 1);
-    for (const int corner : mesh.triangles.col(t)) absl::StrAppend(&text, " ", corner + 1);
-    text += "\n";
-  }
-  for (Eigen::Index e = 0; network && e < mesh.edges.cols(); ++e) {
-    absl::StrAppend(&text, e + 1, " ", kMshLine, " 2 0 1 ", mesh.edges(0, e) + 1, " ", mesh.edges(1, e) + 1, "\n");
-  }
-  return text + "$EndElements\n";
+  const RegionPoints points = PointsOfRegions(mesh, region_of);
+  std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+  AppendPhysicalNames(text, mesh, points);
+  AppendNodes(text, mesh);
+  AppendElements(text, mesh, region_of, points);
+  return text;
 }
 
 }  // namespace phrenic::meshio

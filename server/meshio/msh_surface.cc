@@ -21,7 +21,9 @@ int MshNodesOf(std::int64_t type) {
   return type > 0 && type < static_cast<std::int64_t>(kNodes.size()) ? kNodes[static_cast<std::size_t>(type)] : 0;
 }
 
-bool MshIsSupported(std::int64_t type) { return type == kMshLine || type == kMshTriangle || type == kMshQuadrilateral; }
+bool MshIsSupported(std::int64_t type) {
+  return type == kMshPoint || type == kMshLine || type == kMshTriangle || type == kMshQuadrilateral;
+}
 
 absl::Status MshSurface::AddNode(std::int64_t number, double x, double y, double z) {
   if (!index_of_.emplace(number, builder_.vertices()).second) {
@@ -45,6 +47,10 @@ absl::Status MshSurface::AddElement(std::int64_t type, const std::vector<std::in
     }
     corners_.push_back(found->second);
   }
+  if (type == kMshPoint) {
+    points_.emplace_back(physical, corners_[0]);
+    return absl::OkStatus();
+  }
   if (corners_.size() == 2) builder_.lines.insert(builder_.lines.end(), corners_.begin(), corners_.end());
   builder_.AddPolygon(corners_);
   physical_of_triangle_.resize(builder_.triangles.size() / 3, physical);
@@ -62,15 +68,17 @@ absl::Status MshSurface::AddPhysicalName(std::string_view line) {
     return absl::InvalidArgumentError("the physical name is not in double quotes");
   }
   if (dimension == 2) surface_names_[number] = std::string(name.substr(1, name.size() - 2));
+  if (dimension == 0) point_names_[number] = std::string(name.substr(1, name.size() - 2));
   return absl::OkStatus();
 }
 
 absl::Status MshSurface::Check() const {
   if (builder_.coordinates.empty()) return absl::InvalidArgumentError("the file has no nodes");
   if (!builder_.triangles.empty() || !builder_.lines.empty()) return absl::OkStatus();
+  const auto others = ignored_ + static_cast<std::int64_t>(points_.size());
   return absl::InvalidArgumentError(
-      absl::StrCat("the file has no first-order triangles, quadrilaterals or lines", ignored_ > 0 ? ", only " : "",
-                   ignored_ > 0 ? absl::StrCat(ignored_, " elements of other types") : "",
+      absl::StrCat("the file has no first-order triangles, quadrilaterals or lines", others > 0 ? ", only " : "",
+                   others > 0 ? absl::StrCat(others, " elements of other types") : "",
                    "; generate the surface with: gmsh FILE -2 -order 1 -format msh22 -o NEW.msh"));
 }
 
@@ -82,6 +90,10 @@ Mesh MshSurface::ToMesh() const {
     std::vector<int>& region = mesh.regions[name->second];
     const auto corners = builder_.triangles.begin() + static_cast<std::ptrdiff_t>(3 * triangle);
     region.insert(region.end(), corners, corners + 3);
+  }
+  for (const auto& [physical, vertex] : points_) {
+    const auto name = point_names_.find(physical);
+    if (name != point_names_.end()) mesh.regions[name->second].push_back(vertex);
   }
   for (auto& [name, region] : mesh.regions) {
     std::sort(region.begin(), region.end());

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -15,12 +16,12 @@
 namespace phrenic::meshio {
 
 // Gmsh's element types.
-inline constexpr std::int64_t kMshLine = 1, kMshTriangle = 2, kMshQuadrilateral = 3;
+inline constexpr std::int64_t kMshLine = 1, kMshTriangle = 2, kMshQuadrilateral = 3, kMshPoint = 15;
 inline constexpr std::int64_t kMaxTags = 1000;  // of an element or a view; more means a corrupt file
 
 // Returns the number of nodes of an element type; 0 if Gmsh's manual does not list the type.
 int MshNodesOf(std::int64_t type);
-// True for the element types that are read: first-order lines, triangles and quadrilaterals.
+// True for the element types that are read: points, first-order lines, triangles and quadrilaterals.
 bool MshIsSupported(std::int64_t type);
 
 // The line "2.2 0 8" of $MeshFormat.
@@ -39,6 +40,7 @@ class MshSurface {
   absl::Status AddPhysicalName(std::string_view line);
   // OK if there are triangles or lines; the error says what is missing.
   absl::Status Check() const;
+  // Regions are the named physical surfaces, and the points of named physical points.
   Mesh ToMesh() const;
 
  private:
@@ -47,7 +49,9 @@ class MshSurface {
   std::vector<int> corners_;
   std::unordered_map<std::int64_t, int> index_of_;     // node number -> vertex
   std::map<std::int64_t, std::string> surface_names_;  // physical group -> name
+  std::map<std::int64_t, std::string> point_names_;
   std::vector<std::int64_t> physical_of_triangle_;
+  std::vector<std::pair<std::int64_t, int>> points_;  // physical group, vertex
 };
 
 // True if the file is version 2 text, with one node or element per line. Requires: ParseMsh has accepted the file.

@@ -7,12 +7,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <numbers>
+#include <sstream>
 
 #include "server/anatomy/rib.h"
 #include "server/imaging/label_map.h"
 #include "server/imaging/phantom.h"
 #include "server/imaging/rib_axis.h"
+#include "server/mesh/normals.h"
 #include "server/mesh/topology.h"
 #include "server/mesh/triangle_tree.h"
 #include "server/schema/schema.h"
@@ -27,12 +30,10 @@ constexpr double kVoxel = 3;  // [mm]
 v1::LabelMap Map() { return *ReadLabelMap("totalsegmentator"); }
 
 v1::Scene Pattern() {
-  return *schema::ParseScene("pattern", R"(name: "pattern"
-    layers { name: "diaphragm" } layers { name: "ribs" } layers { name: "sternum" } layers { name: "spine" }
-    bodies { name: "diaphragm" role: ROLE_DEFORMABLE mass: 3 generated {} }
-    motions { ribs { bodies: "ribs" end_states { number: 5 pump_degrees: 9 bucket_degrees: 12 } } }
-    forces { action_line { bodies: "diaphragm" origin { x: -0.05 } direction { z: -1 } radius: 0.08 force: 4
-                           fall_off: FALL_OFF_CYLINDER } })");
+  std::ifstream file(PHRENIC_SCENES_DIR "/thorax.textproto");
+  std::stringstream text;
+  text << file.rdbuf();
+  return *schema::ParseScene("thorax.textproto", text.str());
 }
 
 bool NeverCancel(double, std::string_view) { return true; }
@@ -104,6 +105,7 @@ Patient Adult::patient_;
 TEST_F(Adult, SurfacesAreClosedOutwardAndWithinAVoxelOfTheTruth) {
   ASSERT_GE(patient_.bodies.size(), 45U);
   for (const PatientBody& body : patient_.bodies) {
+    if (body.name == "diaphragm-middle" || body.name == "chest-wall") continue;
     EXPECT_TRUE(AnalyseTopology(body.mesh).watertight()) << body.name;
     EXPECT_GT(SignedVolume(body.mesh.vertices, body.mesh.triangles), 0) << body.name;
   }
@@ -157,17 +159,91 @@ TEST_F(Adult, TheDerivedDiaphragmIsCloseToTheGeneratedOne) {
   EXPECT_GT(report.extrapolated(), 0.01) << "the mediastinum gives no evidence";
 }
 
+// Returns how far the points are outside of the wall, negative inside [mm].
+std::vector<double> OutsideOf(const Mesh& wall, const Points& points) {
+  const TriangleTree tree(wall.vertices, wall.triangles);
+  TriangleTree::Boxes boxes;
+  tree.Fit(wall.vertices, boxes);
+  std::vector<double> outside;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const SurfacePoint nearest = tree.Nearest(wall.vertices, boxes, points.col(i), 1);
+    if (!nearest.on_boundary) outside.push_back(std::copysign(1e3 * std::sqrt(nearest.squared), -nearest.facing));
+  }
+  return outside;
+}
+
+TEST_F(Adult, TheWallIsInsideTheBones) {
+  for (const PatientBody& body : patient_.bodies) {
+    if (body.anatomy.structure() != v1::STRUCTURE_RIB && body.anatomy.structure() != v1::STRUCTURE_VERTEBRA) continue;
+    const std::vector<double> outside = OutsideOf(Find("chest-wall")->mesh, body.mesh.vertices);
+    if (outside.empty()) continue;
+    const double least = body.anatomy.structure() == v1::STRUCTURE_RIB ? -kVoxel / 2 : -kVoxel;
+    EXPECT_GT(*std::min_element(outside.begin(), outside.end()), least) << body.name;
+  }
+}
+
+TEST_F(Adult, TheWallIsCloseToTheGeneratedOneInTheZoneOfApposition) {
+  const Mesh truth = Truth(v1::STRUCTURE_INNER_CAGE, 0, v1::SIDE_UNSPECIFIED, 6);
+  const Mesh& middle = Find("diaphragm-middle")->mesh;
+  const std::vector<double> outside = OutsideOf(truth, middle.vertices(Eigen::all, middle.regions.at("insertion")));
+  double off = 0;
+  for (const double distance : outside) off += std::abs(distance) / static_cast<double>(outside.size());
+  std::printf("insertion: %.2f mm from the generated wall\n", off);
+  EXPECT_LT(off, 4);
+}
+
+TEST_F(Adult, TheMiddleLayerIsADiscInsideTheWallWithItsBorderOnIt) {
+  const Mesh& middle = Find("diaphragm-middle")->mesh;
+  const SurfaceTopology topology = AnalyseTopology(middle);
+  EXPECT_EQ(topology.components, 1);
+  EXPECT_EQ(topology.euler_characteristic(), 1);
+  const Mesh& wall = Find("chest-wall")->mesh;
+  const std::vector<double> all = OutsideOf(wall, middle.vertices);
+  EXPECT_LT(*std::max_element(all.begin(), all.end()), 0.5) << "chords of the wall before the spine";
+  const std::vector<double> rim = OutsideOf(wall, middle.vertices(Eigen::all, middle.regions.at("rim")));
+  EXPECT_GT(*std::min_element(rim.begin(), rim.end()), -5) << "what is inserted is near the wall";
+  for (const char* region : {"tendon", "muscle", "rim", "insertion", "crus-right", "crus-left"}) {
+    EXPECT_TRUE(middle.regions.contains(region)) << region;
+  }
+}
+
+TEST_F(Adult, TheMiddleLayerFacesTheThorax) {
+  const Mesh& middle = Find("diaphragm-middle")->mesh;
+  double up = 0;
+  for (const int i : middle.regions.at("tendon")) up += VertexNormals(middle.vertices, middle.triangles)(2, i);
+  EXPECT_GT(up, 0);
+}
+
 TEST_F(Adult, TheSceneHasTheBodiesAndPatientSpecificRibAxes) {
   EXPECT_EQ(patient_.scene.bodies(0).file().path(), "patient/diaphragm.msh");
   int turned = 0;
   for (const v1::Motion& motion : patient_.scene.motions()) {
     if (!motion.has_ribs()) continue;
+    EXPECT_TRUE(motion.ribs().has_free());
     const v1::RibEndState& end = motion.ribs().end_states(0);
-    EXPECT_NEAR(std::hypot(end.pump_degrees(), end.bucket_degrees()), 15, 1e-9) << "the pattern's angle";
+    if (end.number() != 5) continue;
+    EXPECT_NEAR(std::hypot(end.pump_degrees(), end.bucket_degrees()), std::hypot(9, 11.5), 1e-9)
+        << "the pattern's angle";
     ++turned;
   }
-  EXPECT_EQ(turned, 2) << "the fifth ribs, whose angle the pattern has";
+  EXPECT_EQ(turned, 2);
   EXPECT_TRUE(schema::Validate(patient_.scene).ok()) << schema::Validate(patient_.scene);
+}
+
+TEST_F(Adult, TheScenesMuscleIsTheMiddleLayerAndNoBodyIsGenerated) {
+  for (const v1::Body& body : patient_.scene.bodies()) {
+    EXPECT_TRUE(body.has_file()) << body.name();
+    EXPECT_EQ(body.role() == v1::ROLE_DEFORMABLE, body.name() == "diaphragm-middle") << body.name();
+  }
+  for (const v1::Force& force : patient_.scene.forces()) EXPECT_FALSE(force.has_action_line() || force.has_springs());
+}
+
+// The adult phantom is the generated thorax, so that what is scaled by the volume keeps its value.
+TEST_F(Adult, TheLungsHaveTheGeneratedOnesRoom) {
+  for (const v1::Force& force : patient_.scene.forces()) {
+    if (!force.has_thorax_pressures()) continue;
+    EXPECT_NEAR(force.thorax_pressures().lungs().room(), 3.6e-3, 0.5e-3);
+  }
 }
 
 TEST(Patient, VolumesWithoutAThoraxAreRejected) {

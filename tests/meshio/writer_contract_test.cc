@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -117,6 +119,17 @@ TEST(Writers, MshKeepsRegions) {
   Mesh mesh = ManyDigits();
   mesh.regions["rim"] = {mesh.triangles(0, 5), mesh.triangles(1, 5), mesh.triangles(2, 5)};
   std::sort(mesh.regions["rim"].begin(), mesh.regions["rim"].end());
+  EXPECT_EQ(RoundTrip(mesh, ".msh").regions, mesh.regions);
+}
+
+TEST(Writers, MshKeepsRegionsThatOverlapOrHaveNoTriangle) {
+  Mesh mesh = ManyDigits();
+  std::set<int> two(mesh.triangles.col(4).begin(), mesh.triangles.col(4).end());
+  two.insert(mesh.triangles.col(5).begin(), mesh.triangles.col(5).end());
+  mesh.regions["all"].resize(static_cast<std::size_t>(mesh.vertices.cols()));
+  std::iota(mesh.regions["all"].begin(), mesh.regions["all"].end(), 0);
+  mesh.regions["border"] = {0, 2};
+  mesh.regions["two"] = {two.begin(), two.end()};
   EXPECT_EQ(RoundTrip(mesh, ".msh").regions, mesh.regions);
 }
 

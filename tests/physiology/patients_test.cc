@@ -18,10 +18,10 @@ namespace phrenic {
 namespace {
 
 v1::Scene ThoraxScene() {
-  std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/thorax-thesis.textproto");
+  std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/thorax.textproto");
   std::stringstream text;
   text << file.rdbuf();
-  return *schema::ParseScene("thorax-thesis.textproto", text.str());
+  return *schema::ParseScene("thorax.textproto", text.str());
 }
 
 absl::StatusOr<imaging::Patient> PatientOf(const std::string& body) {

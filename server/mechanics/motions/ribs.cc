@@ -94,8 +94,12 @@ absl::StatusOr<std::unique_ptr<Motion>> Ribs::Make(const v1::Ribs& scene, const 
 
 void Ribs::AddCoordinates(const v1::FreeCage& scene, ModelBuilder& builder) {
   free_ = true;
-  pump_ = builder.AddCoordinate(kPumpHandle, "1", scene.pump_inertia());
-  bucket_ = builder.AddCoordinate(kBucketHandle, "1", scene.bucket_inertia());
+  const auto shared = [&](const char* name, double inertia) {
+    const auto found = builder.FindCoordinate(name, "");
+    return found.ok() ? *found : builder.AddCoordinate(name, "1", inertia);
+  };
+  pump_ = shared(kPumpHandle, scene.pump_inertia());
+  bucket_ = shared(kBucketHandle, scene.bucket_inertia());
 }
 
 // Sets the pose of a rib that is turned about its head and moved, given its angular velocity [rad/s].

@@ -4,7 +4,8 @@
 // Physiol 1987;62:1872). The live parameters pump_handle and bucket_handle scale the two components of A, but not T.
 // With the live parameter hyperinflation h, breaths start at k0 = h k_quiet and use the remaining range: k = k0 + (1 -
 // k0) k_breath, so that no breath exceeds total lung capacity. If the scene sets `free`, the two components have a k
-// each, the coordinates "pump handle" and "bucket handle", which forces move. The head is the mean of the vertices
+// each, the coordinates "pump handle" and "bucket handle", which forces move. All free ribs of a scene share them, with
+// the inertia of the first motion. The head is the mean of the vertices
 // within 6 mm of the most medial one.
 #ifndef PHRENIC_SERVER_MECHANICS_MOTIONS_RIBS_H_
 #define PHRENIC_SERVER_MECHANICS_MOTIONS_RIBS_H_
