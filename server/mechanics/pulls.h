@@ -20,8 +20,8 @@ inline constexpr int kMostPulls = 64;     // at the same time
 inline constexpr double kMostPull = 1e6;  // along each axis [N]
 
 // Returns the listed pulls on simulated vertices. A pull on a seen body that is bound to the triangles of a deformable
-// one (SKIN_MODE_SHEET, SKIN_MODE_TRIANGLES) acts on the nearest corner of the vertex' triangle. INVALID_ARGUMENT "pulls[1].vertex: ..." if there is no such body or
-// vertex, if it cannot move, or if the force is out of range.
+// one (SKIN_MODE_SHEET, SKIN_MODE_TRIANGLES) acts on the nearest corner of the vertex' triangle. INVALID_ARGUMENT
+// "pulls[1].vertex: ..." if there is no such body or vertex, if it cannot move, or if the force is out of range.
 absl::StatusOr<std::vector<VertexPull>> FindPulls(const Model& model, const PullList& list, std::string_view path);
 
 // Replaces the pull on the vertex of each change, or removes it if the force is zero; removes all others if `alone`.

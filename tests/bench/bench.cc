@@ -119,8 +119,7 @@ class Bench {
     table.Register({kThorax, [this] { thorax_.Step(); }, vertices, "vertex", kEulerSingle});
     const auto thesis = static_cast<double>(subjects_.thesis->rest.cols());
     table.Register({kThesis, [this] { thesis_.Step(); }, thesis, "vertex", kEulerSingle});
-    table.Register(
-        {"thorax-thesis without its rigid links", [this] { unlinked_.Step(); }, thesis, "vertex", kThesis});
+    table.Register({"thorax-thesis without its rigid links", [this] { unlinked_.Step(); }, thesis, "vertex", kThesis});
     const auto measure = [this] {
       const EvalContext at = MakeEvalContext(*subjects_.thorax, thorax_.parameters, thorax_.state, scratch_);
       benchmark::DoNotOptimize(ReadMeasures(*subjects_.thorax, at));
