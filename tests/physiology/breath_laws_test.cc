@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "server/mechanics/stability/largest_step.h"
 #include "server/mechanics/step/step.h"
 #include "tests/physiology/generated_thorax.h"
 
@@ -218,6 +219,16 @@ TEST(LawsOfABreath, TheMirrorImageBreathesAsTheMirrorImage) {
     std::printf("%s, mirrored: %.2g mm apart of %.1f moved\n", preset, 1e3 * apart, 1e3 * moved);
     EXPECT_GT(moved, 0.005) << preset;
     EXPECT_LT(apart, most * moved) << preset;
+  }
+}
+
+TEST(LawsOfABreath, EveryIntegratorBeginsWithAFiniteStep) {
+  const auto model = CompileThorax(8, false);
+  for (int integrator = 1; integrator < v1::Integrator_ARRAYSIZE; ++integrator) {
+    v1::Parameters parameters = model->parameters;
+    parameters.set_integrator(static_cast<v1::Integrator>(integrator));
+    const double step = ChosenStep(LargestStableStep(*model, parameters));
+    EXPECT_TRUE(std::isfinite(step) && step > 0) << v1::Integrator_Name(integrator) << ": " << step;
   }
 }
 

@@ -37,6 +37,17 @@ inline double DomeDescent(const physiology::Subject& subject, const State& state
                 height(physiology::Placed(subject.model, state, sheet)));
 }
 
+// Returns a section of the physiology page, from its heading to the next.
+inline std::string PhysiologyPage(const std::string& heading) {
+  std::ifstream file(PHRENIC_SOURCE_DIR "/server/physiology/README.md");
+  std::stringstream text;
+  text << file.rdbuf();
+  const std::string page = text.str();
+  const size_t begin = page.find("\n## " + heading + "\n");
+  EXPECT_NE(begin, std::string::npos) << heading;
+  return begin == std::string::npos ? "" : page.substr(begin, page.find("\n## ", begin + 1) - begin);
+}
+
 // A fixture whose model all tests of a suite share.
 class GeneratedThorax : public testing::Test {
  protected:

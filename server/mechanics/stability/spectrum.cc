@@ -217,7 +217,7 @@ Largest FindLimiting(ScaledStiffness& matrix, const Integrator& integrator, Spec
     spectrum.omega_max = std::sqrt(std::max(0.0, elastic) + limiting.residual);
     CountedRate(integrator, spectrum) = std::max(0.0, limiting.ritz - elastic) * step / 2;
     const double guessed = std::exchange(step, integrator.MaxStep(spectrum));
-    if (std::abs(guessed / step - 1) < kNearby) break;
+    if (step == 0 || std::abs(guessed / step - 1) < kNearby) break;  // 0: the integrator is stable at no step
   }
   return limiting;
 }
