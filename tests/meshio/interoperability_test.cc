@@ -17,8 +17,13 @@ using ::testing::HasSubstr;
 
 bool Works(const std::string& command) { return std::system((command + " >/dev/null 2>&1").c_str()) == 0; }
 
+// A path for the running test alone: tests run beside each other.
+std::string Scratch(const std::string& ending) {
+  return testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ending;
+}
+
 std::string OutputOf(const std::string& command) {
-  const std::string log = testing::TempDir() + "phrenic_interop.log";
+  const std::string log = Scratch(".log");
   EXPECT_EQ(std::system((command + " >" + log + " 2>&1").c_str()), 0) << command;
   std::stringstream text;
   text << std::ifstream(log).rdbuf();
@@ -27,7 +32,7 @@ std::string OutputOf(const std::string& command) {
 
 // Writes an ellipsoid of 20 x 40 x 60 mm with 102 vertices and 200 triangles, in millimetres. Returns the path.
 std::string WriteEllipsoid(const std::string& ending) {
-  std::string path = testing::TempDir() + "phrenic_interop" + ending;
+  std::string path = Scratch(ending);
   const Mesh mesh = EllipsoidSurface({0, 0, 0.1}, {0.01, 0.02, 0.03}, 5, false);
   std::ofstream(path, std::ios::binary) << *Write(path, mesh, 1e-3);
   return path;
@@ -35,7 +40,7 @@ std::string WriteEllipsoid(const std::string& ending) {
 
 TEST(Interoperability, GmshOpensWrittenFiles) {
   if (!Works("command -v gmsh")) GTEST_SKIP() << "gmsh is not installed";
-  const std::string geo = testing::TempDir() + "phrenic_interop.geo";
+  const std::string geo = Scratch(".geo");
   for (const char* ending : {".msh", ".stl"}) {  // gmsh 4.8 does not read every PLY, and no OBJ
     std::ofstream(geo) << "Merge \"" << WriteEllipsoid(ending) << "\";\nPrintf(\"%g nodes\", Mesh.NbNodes);\n"
                        << "Printf(\"%g triangles\", Mesh.NbTriangles);\n";
@@ -48,7 +53,7 @@ TEST(Interoperability, GmshOpensWrittenFiles) {
 TEST(Interoperability, VtkOpensWrittenFiles) {
   const std::string python = "/usr/bin/python3";  // Debian's Python, for which its VTK package is built
   if (!Works(python + " -c 'import vtk'")) GTEST_SKIP() << "VTK is not installed (python3-vtk9)";
-  const std::string script = testing::TempDir() + "phrenic_interop.py";
+  const std::string script = Scratch(".py");
   std::ofstream(script) << "import sys, vtk\n"
                            "for name, reader in (('.obj', vtk.vtkOBJReader()), ('.stl', vtk.vtkSTLReader()),\n"
                            "                     ('.ply', vtk.vtkPLYReader()), ('.vtk', vtk.vtkPolyDataReader()),\n"
