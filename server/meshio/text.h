@@ -54,7 +54,7 @@ class TextReader {
 std::string Quoted(std::string_view word);
 
 // Parse the entire word as an integer, and as a finite number. Return false if that fails. Numbers are those of
-// std::from_chars, with a "+" allowed; "nan" and "inf" are refused. Return false if that fails.
+// std::from_chars, with a "+" allowed; "nan" and "inf" are refused.
 bool ParseInteger(std::string_view word, std::int64_t& integer);
 bool ParseNumber(std::string_view word, double& number);
 

@@ -116,7 +116,7 @@ class Session {
   // RESOURCE_EXHAUSTED past kMostPulls. `release_others` removes the pulls on all other vertices.
   absl::StatusOr<v1::Session> Pull(const PullList& pulls, bool release_others, std::string_view token = {});
 
-  // Who may see the session. Returns a copy of the last report, without waiting for the stepping thread.
+  // Who may see the session. As last reported; does not wait for the stepping thread.
   std::shared_ptr<const Access> access() const { return board_.access(); }
   // Notes that a caller asked for the session now. Table::Find calls it.
   void NoteAttention() { attended_ = absl::ToUnixNanos(clock_.Now()); }
