@@ -15,7 +15,8 @@ std::string StateName(v1::SessionState state);
 // Returns the value of a parameter: "1.5", "on", "velocity_verlet".
 std::string ParameterValue(const v1::Parameters& parameters, const google::protobuf::FieldDescriptor& field);
 
-// Returns the parameters that are set: "breath_length=4 breath_force=1.5 ...".
+// Returns the parameters that are set: "breath_length=4 breath_force=1.5 ...". In the order of the schema, separated by
+// blanks.
 std::string ParametersLine(const v1::Parameters& parameters);
 
 // Returns a line for each group of parameters that has a set one: "BEFOREBreathing: breath_length=4 ...\n".
@@ -32,10 +33,12 @@ std::string WarningLines(const google::protobuf::RepeatedPtrField<std::string>& 
 // `before` and `after`; empty if no implicit step ran.
 std::string SolverText(const v1::Session& session, const char* before, const char* after);
 
-// Returns one line for the controller and one for each participant.
+// Returns one line for the controller and one for each participant. Says that everybody controls if there is no
+// controller.
 std::string ControlText(const v1::Control& control);
 
-// Prints state, time, pace, parameters, residuals, control, pulls and, after a divergence, its cause and remedy.
+// Prints state, time, pace, parameters, residuals, control, pulls and, after a divergence, its cause and remedy. Units
+// are those of the fields; residuals are in millimetres, pulls in newtons. Each line ends with "\n".
 void PrintSession(const v1::Session& session, std::ostream& out);
 
 }  // namespace phrenic::client

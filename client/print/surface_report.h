@@ -9,7 +9,7 @@
 namespace phrenic::client {
 
 // Prints counts, measures, the ten largest components, suggested repairs and reasons for which a scene refuses the
-// file.
+// file. Lengths are in mm, areas in mm^2, volumes in ml, as in the report.
 void PrintSurface(const v1::SurfaceReport& report, std::ostream& out);
 
 }  // namespace phrenic::client

@@ -8,7 +8,7 @@
 namespace phrenic::client {
 
 // Returns the value of an environment variable; empty if it is not set. Requires: no other thread changes the
-// environment at the same time.
+// environment at the same time. A variable that is set to nothing counts as not set. The result is a copy.
 inline std::string EnvironmentVariable(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;

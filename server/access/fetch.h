@@ -13,7 +13,7 @@ bool IsAddress(const std::string& text);
 
 // Returns the document. Does not follow redirects; the server's certificate must be trusted by the system. Thread-safe.
 // Errors: INVALID_ARGUMENT for http:// except on loopback; UNAVAILABLE, with the address and the reason, if the
-// document takes longer than 10 s, is larger than 1 MiB, or has a status other than 200.
+// document takes longer than 10 s, is larger than 1 MiB, or has a status other than 200. Blocks the calling thread.
 absl::StatusOr<std::string> Fetch(const std::string& address);
 
 }  // namespace phrenic::access

@@ -13,6 +13,7 @@
 
 namespace phrenic::access {
 
+// Options of the server, constant while it runs.
 struct JwtOptions {
   // File or address of a JSON Web Key Set (RFC 7517), or of an OpenID Connect configuration (Discovery 1.0 section 3)
   // whose "jwks_uri" names one; empty: no tokens are accepted.
@@ -27,15 +28,16 @@ struct JwtOptions {
 std::string JwtAccountName(std::string_view issuer, std::string_view subject);
 
 // Checks a token's header and claims, as JSON text, but not its signature: the parts of JwtKeys::Check that read what a
-// client has written. Thread-safe.
+// client has written. Thread-safe. UNAUTHENTICATED with the reason.
 absl::Status CheckJwtHeader(std::string_view header);
 absl::StatusOr<Account> ReadJwtClaims(std::string_view claims, const JwtOptions& options, absl::Time now);
 
-// Immutable and thread-safe.
+// Immutable and thread-safe. Accounts shares one between calls and replaces it when the keys change.
 class JwtKeys {
  public:
   // Reads the key set. INVALID_ARGUMENT, with the file and the reason, if it is not JSON or has no RSA or EC key; the
-  // errors of Fetch.
+  // errors of Fetch. INVALID_ARGUMENT also without an issuer or an audience. Symmetric keys are ignored: anyone who can
+  // read a public set could sign with them.
   static absl::StatusOr<std::shared_ptr<const JwtKeys>> Read(const JwtOptions& options);
   JwtKeys(const JwtKeys&) = delete;
   JwtKeys& operator=(const JwtKeys&) = delete;
@@ -45,16 +47,18 @@ class JwtKeys {
   // set with RS, PS or ES (RFC 7518 section 3.1), if the header has extensions that must be understood ("crit", RFC
   // 7515 section 4.1.11), or if issuer, audience, time ("exp" is required; "exp", "nbf" and "iat" must be numbers;
   // clocks may differ by 60 s), name (1 to 255 bytes that can be printed on one line) or role are not accepted (RFC
-  // 7519 section 4.1).
+  // 7519 section 4.1). Also UNAUTHENTICATED for a token above 16 KiB. The account gets the highest role that the token
+  // names.
   absl::StatusOr<Account> Check(std::string_view token, absl::Time now) const;
 
  private:
   explicit JwtKeys(JwtOptions options);
+  // Returns the claims as JSON text if the signature is valid.
   absl::StatusOr<std::string> VerifiedClaims(std::string_view token) const;
 
   const JwtOptions options_;
   struct Key;
-  std::vector<std::unique_ptr<Key>> keys_;
+  std::vector<std::unique_ptr<Key>> keys_;  // RSA and EC, in the order of the set
 };
 
 }  // namespace phrenic::access

@@ -13,21 +13,22 @@
 
 namespace phrenic::access {
 
-// One token bucket per caller. Keeps the 10,000 most recent callers. Thread-safe.
+// One token bucket per caller. Keeps the 10,000 most recent callers. Thread-safe. AccessGuard has one for calls and one
+// for the refusals that it logs. A caller that was dropped begins with a full bucket again.
 class RateLimit {
  public:
   // `rate` [1/s]; 0 means no limit.
   explicit RateLimit(double rate) : rate_(rate) {}
 
   // Takes one token of the caller's bucket. RESOURCE_EXHAUSTED, with the limit, if it is empty. `now` must come from
-  // the same clock in all calls.
+  // the same clock in all calls. If the clock goes back, the bucket does not fill meanwhile.
   absl::Status Take(const std::string& caller, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
   struct Bucket {
     std::string caller;
-    double tokens;
-    absl::Time updated;
+    double tokens;       // at most two seconds' requests
+    absl::Time updated;  // the last Take
   };
 
   const double rate_;

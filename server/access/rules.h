@@ -9,6 +9,8 @@
 
 namespace phrenic::access {
 
+// AccessGuard checks it before a method runs; the services check further that exports, studies and uploads belong to
+// the caller.
 struct Rule {
   std::string_view method;                            // "SessionService.GetSession"
   v1::AccessRole role = v1::ACCESS_ROLE_UNSPECIFIED;  // required of the account; unspecified: any account or join link
@@ -18,7 +20,7 @@ struct Rule {
   bool uncounted = false;  // exempt from the rate limit, because it is frequent and cheap
 };
 
-// Returns all rules. All functions are thread-safe.
+// Returns all rules. All functions are thread-safe. The table is constant.
 std::span<const Rule> Rules();
 
 // Returns the rule of the method with this request type, such as "phrenic.v1.GetSessionRequest"; no two methods share

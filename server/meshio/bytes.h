@@ -15,9 +15,10 @@
 namespace phrenic::meshio {
 
 // A cursor over binary data that decodes numbers without copying the data. Holds views into `name` and `bytes`, which
-// must outlive it. Not thread-safe.
+// must outlive it. Not thread-safe. The parsers of binary STL, PLY, MSH and VTK use it.
 class ByteReader {
  public:
+  // `name` is the file's, for errors. An `at` behind the end counts as the end.
   ByteReader(std::string_view name, std::string_view bytes, std::size_t at, std::endian order = std::endian::little)
       : name_(name), bytes_(bytes), at_(std::min(at, bytes.size())), order_(order) {}
 
@@ -33,14 +34,15 @@ class ByteReader {
     return true;
   }
 
+  // Moves over `count` bytes. Returns false and moves nowhere if fewer are left.
   bool Skip(std::size_t count) {
     if (left() < count) return false;
     at_ += count;
     return true;
   }
 
-  std::size_t at() const { return at_; }  // offset of the next byte
-  std::size_t left() const { return bytes_.size() - at_; }
+  std::size_t at() const { return at_; }                    // offset of the next byte
+  std::size_t left() const { return bytes_.size() - at_; }  // bytes
   // Returns INVALID_ARGUMENT "name:byte N: message", N the offset of the next byte.
   absl::Status Error(const std::string& message) const {
     return absl::InvalidArgumentError(absl::StrCat(std::string(name_), ":byte ", at_, ": ", message));
@@ -50,7 +52,7 @@ class ByteReader {
   std::string_view name_;
   std::string_view bytes_;
   std::size_t at_;
-  std::endian order_;
+  std::endian order_;  // of the file
 };
 
 // Appends the number in little-endian byte order.

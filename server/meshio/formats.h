@@ -17,7 +17,7 @@
 namespace phrenic::meshio {
 
 // Wavefront OBJ: "v", "f" (any polygon; v, v/vt, v//vn or v/vt/vn; negative indices) and "l"; other statements are
-// ignored.
+// ignored. Lines end with "\n" or "\r\n"; written with "\n" and the shortest exact numbers.
 absl::StatusOr<Surface> ParseObj(std::string_view name, std::string_view bytes);
 absl::StatusOr<std::string> WriteObj(const Mesh& mesh);
 
@@ -43,28 +43,31 @@ absl::StatusOr<std::string> WriteVtk(const Mesh& mesh);
 absl::StatusOr<Surface> ParseVtp(std::string_view name, std::string_view bytes);
 absl::StatusOr<std::string> WriteVtp(const Mesh& mesh);
 
+// `parse` gets the whole file, `write` a mesh that Validate has accepted, in the file's unit. Both are thread-safe.
 struct Format {
   std::string_view ending;  // file name extension in lower case, with its dot
   absl::StatusOr<Surface> (*parse)(std::string_view name, std::string_view bytes);
   absl::StatusOr<std::string> (*write)(const Mesh& mesh);  // null if the format is read-only
 };
 
-// The catalogue of formats, one row each.
+// The catalogue of formats, one row each. It lives as long as the process; Endings() lists it in this order.
 const std::vector<Format>& Formats();
 
 // Converts positions or displacements from RAS to LPS, x -> -x and y -> -y, without negative zeros.
 void RasToLps(Points& vectors);
 
-// Accumulates a mesh while parsing, in the file's order.
+// Accumulates a mesh while parsing, in the file's order. Indices are from 0 and may be out of range: meshio.h validates
+// the mesh. Not thread-safe.
 struct SurfaceBuilder {
   std::vector<double> coordinates;  // x y z per vertex
   std::vector<int> triangles;       // three indices per triangle
   std::vector<int> lines;           // two indices per line
 
   int vertices() const { return static_cast<int>(coordinates.size() / 3); }
-  // Adds a polygon of three corners or more as a fan of triangles at its first corner.
+  // Adds a polygon of three corners or more as a fan of triangles at its first corner. Does nothing for fewer corners.
   void AddPolygon(const std::vector<int>& corners);
-  // Keeps lines only if there are no triangles; beside triangles, lines are outlines and not a network.
+  // Keeps lines only if there are no triangles; beside triangles, lines are outlines and not a network. Copies; the
+  // mesh has no regions.
   Mesh ToMesh() const;
 };
 

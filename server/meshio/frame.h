@@ -14,10 +14,12 @@ namespace phrenic::meshio {
 // frame, in any case and with blanks and quotes around the name: "space = ras", "SPACE:LPS", NRRD's
 // "left-posterior-superior". Without a sign between, only the name of a frame makes a statement. Sets `frame`, and
 // leaves it unchanged without a statement. Returns an empty text, or the fault: another frame ("SPACE=RAST",
-// "SPACE=LAS"), or one that contradicts `frame`.
+// "SPACE=LAS"), or one that contradicts `frame`. The parsers call it for each comment and header, and add the position
+// to the fault.
 std::string ReadFrame(std::string_view text, Frame& frame);
 
-// The same for the value of a VTK field "SPACE": the name of a frame, or a statement.
+// The same for the value of a VTK field "SPACE": the name of a frame, or a statement. A value that is neither is a
+// fault.
 std::string ReadFrameField(std::string_view value, Frame& frame);
 
 // True if `name` is that of a field that states the frame.

@@ -30,23 +30,27 @@ struct MshVersion {
   bool binary = false;
 };
 
-// Errors are INVALID_ARGUMENT with the sentence alone; the parser adds the position. Not thread-safe.
+// Errors are INVALID_ARGUMENT with the sentence alone; the parser adds the position. Not thread-safe. One parser owns
+// it. Nodes come before the elements that name them.
 class MshSurface {
  public:
+  // `number` is the file's; coordinates are in its unit. An error if the number was used before.
   absl::Status AddNode(std::int64_t number, double x, double y, double z);
-  // Adds an element of MshNodesOf(type) nodes; ignores it unless MshIsSupported(type).
+  // Adds an element of MshNodesOf(type) nodes; ignores it unless MshIsSupported(type). `physical` is the number of its
+  // physical group, 0 for none. A quadrilateral becomes two triangles. An error if a node was not added.
   absl::Status AddElement(std::int64_t type, const std::vector<std::int64_t>& nodes, std::int64_t physical);
-  // Adds a line of $PhysicalNames: dimension number "name".
+  // Adds a line of $PhysicalNames: dimension number "name". Names of curves and volumes are ignored.
   absl::Status AddPhysicalName(std::string_view line);
   // OK if there are triangles or lines; the error says what is missing.
   absl::Status Check() const;
-  // Regions are the named physical surfaces, and the points of named physical points.
+  // Regions are the named physical surfaces, and the points of named physical points. The vertices of a region ascend,
+  // each once.
   Mesh ToMesh() const;
 
  private:
-  SurfaceBuilder builder_;
-  std::int64_t ignored_ = 0;  // elements of other types
-  std::vector<int> corners_;
+  SurfaceBuilder builder_;                             // vertices in the order of AddNode
+  std::int64_t ignored_ = 0;                           // elements of other types
+  std::vector<int> corners_;                           // of the present element
   std::unordered_map<std::int64_t, int> index_of_;     // node number -> vertex
   std::map<std::int64_t, std::string> surface_names_;  // physical group -> name
   std::map<std::int64_t, std::string> point_names_;
@@ -55,6 +59,7 @@ class MshSurface {
 };
 
 // True if the file is version 2 text, with one node or element per line. Requires: ParseMsh has accepted the file.
+// Reads the version line alone.
 bool MshIsVersion2Text(std::string_view bytes);
 
 // Parses a file of version 2 binary or version 4.1 from byte `at`, the start of the line after "2.2 1 8" or "4.1 0 8".

@@ -14,6 +14,7 @@
 namespace phrenic::meshio {
 
 enum class PlyEncoding { kText, kLittleEndian, kBigEndian };
+// The header names each by either of two words, such as "char" and "int8".
 enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 
 struct PlyProperty {
@@ -23,22 +24,25 @@ struct PlyProperty {
   PlyType count_type = PlyType::kUint8;  // type of a list's length
 };
 
+// An element without properties is refused, since the file could claim any number of them.
 struct PlyElement {
   std::string name;
-  std::int64_t count = 0;  // rows, as declared
+  std::int64_t count = 0;  // rows, as declared; 0 to INT_MAX
   std::vector<PlyProperty> properties;
 
   // Returns the index of the property, or -1.
   int Find(std::string_view property) const;
 };
 
+// Plain data, in the file's order.
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kText;
-  Frame frame = Frame::kUnspecified;
-  std::vector<PlyElement> elements;  // exactly one is named "vertex", with scalar properties x, y and z
+  Frame frame = Frame::kUnspecified;  // of the comments
+  std::vector<PlyElement> elements;   // exactly one is named "vertex", with scalar properties x, y and z
 };
 
-// Reads from the start of the file through the line "end_header". INVALID_ARGUMENT "name:line: ...".
+// Reads from the start of the file through the line "end_header". INVALID_ARGUMENT "name:line: ...". The body starts at
+// reader.next_line().
 absl::StatusOr<PlyHeader> ReadPlyHeader(TextReader& reader);
 
 }  // namespace phrenic::meshio

@@ -12,17 +12,19 @@
 
 namespace phrenic::meshio {
 
-// Not thread-safe.
+// Not thread-safe. In binary, rows have no delimiter: the caller takes the properties of the header in order.
 class PlyValues {
  public:
   virtual ~PlyValues() = default;
-  // Moves to the next row of an element (in text: the next non-blank line). Returns false at the end of the file.
+  // Moves to the next row of an element (in text: the next non-blank line). Returns false at the end of the file. In
+  // binary: true while bytes are left.
   virtual bool NextRow() = 0;
   // Reads the row's next number, NaN if the text is not a finite number. Returns false at the end of the row or file.
+  // Text ignores `type`.
   virtual bool Take(PlyType type, double& number) = 0;
   // True if the row has no further numbers; always true in binary.
   virtual bool AtEndOfRow() const = 0;
-  // True if the file has no further data.
+  // True if the file has no further data. In text it moves to the next non-blank line.
   virtual bool AtEnd() = 0;
   // Returns INVALID_ARGUMENT with the current line or byte.
   virtual absl::Status Error(const std::string& message) const = 0;

@@ -11,7 +11,7 @@
 namespace phrenic::meshio {
 
 // Lines end with "\n" or "\r\n"; words are separated by blanks. Holds views into `name` and `bytes`, which must outlive
-// it, and copies nothing. Not thread-safe.
+// it, and copies nothing. Not thread-safe. Copies are independent cursors.
 class TextReader {
  public:
   TextReader(std::string_view name, std::string_view bytes) : name_(name), bytes_(bytes) {}
@@ -27,16 +27,18 @@ class TextReader {
   std::string_view Rest() const;
   // Reads the next word of the line; empty at its end.
   std::string_view Word();
-  // Reads the next word as a finite number. Returns false if it is not one or the line has ended.
+  // Reads the next word as a finite number. Returns false if it is not one or the line has ended. A "+" before a number
+  // is accepted, here and in Integer.
   bool Number(double& number);
   bool Integer(std::int64_t& integer);
 
   // Byte offset of the next line.
   std::size_t next_line() const { return next_; }
-  // Number of the current line, from 1; 0 before the first.
+  // Number of the current line, from 1; 0 before the first. A joined line has the number of its last one.
   int line() const { return line_; }
   // Returns INVALID_ARGUMENT "name:line: message".
   absl::Status Error(const std::string& message) const { return ErrorAt(line_, message); }
+  // The same for another line.
   absl::Status ErrorAt(int line, const std::string& message) const;
 
  private:
@@ -51,7 +53,8 @@ class TextReader {
 // Returns the word for an error message: quoted, truncated to 32 characters, unprintable ones replaced by "?".
 std::string Quoted(std::string_view word);
 
-// Parse the entire word as an integer, and as a finite number. Return false if that fails.
+// Parse the entire word as an integer, and as a finite number. Return false if that fails. Numbers are those of
+// std::from_chars, with a "+" allowed; "nan" and "inf" are refused.
 bool ParseInteger(std::string_view word, std::int64_t& integer);
 bool ParseNumber(std::string_view word, double& number);
 

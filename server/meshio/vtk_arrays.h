@@ -13,7 +13,7 @@
 
 namespace phrenic::meshio {
 
-// Encoding attributes of a file, common to its arrays.
+// Encoding attributes of a file, common to its arrays. The view refers to the file, which must outlive it.
 struct VtkEncoding {
   bool wide_header = false;  // header_type is UInt64 instead of UInt32
   bool compressed = false;   // by zlib
@@ -23,7 +23,7 @@ struct VtkEncoding {
   std::size_t max_unpacked = 0;  // maximum uncompressed size of an array [bytes]
 };
 
-// The attributes and text of a DataArray element.
+// The attributes and text of a DataArray element. Views of the XML document, which must outlive it.
 struct VtkArray {
   std::string_view type;    // "Float32"
   std::string_view format;  // "ascii", "binary", "appended"
@@ -32,7 +32,9 @@ struct VtkArray {
 };
 
 // Return the numbers of a Float32 or Float64 array, all finite, and of an array of any integer type. Errors are
-// INVALID_ARGUMENT with the sentence alone; the parser adds the position. Thread-safe.
+// INVALID_ARGUMENT with the sentence alone; the parser adds the position. Thread-safe. UInt64 is read as Int64.
+// INVALID_ARGUMENT for another type, damaged or truncated data, excess bytes, and a declared size above max_unpacked,
+// which is checked before memory is allocated.
 absl::StatusOr<std::vector<double>> ReadDoubles(const VtkArray& array, const VtkEncoding& encoding);
 absl::StatusOr<std::vector<std::int64_t>> ReadIntegers(const VtkArray& array, const VtkEncoding& encoding);
 

@@ -6,7 +6,9 @@
 
 namespace phrenic::record {
 
-// Returns a recorder that writes one row per frame and keeps nothing.
+// Returns a recorder that writes one row per frame and keeps nothing. Writes the times [s] with 12 digits and the
+// numbers with 9, in the units of Recording::columns; ignores bodies. Lines end with "\n"; a line break in a name
+// becomes a blank.
 std::unique_ptr<Recorder> MakeCsvRecorder(Settings settings);
 
 }  // namespace phrenic::record

@@ -7,7 +7,9 @@
 namespace phrenic::record {
 
 // Returns a recorder. The format is ordered by vertex, so frames are spooled to disk and transposed by VertexSpool,
-// which bounds the memory.
+// which bounds the memory. AddFrame rounds positions to nanometres, so that the changes from frame to frame add up
+// exactly. Begin, AddFrame and End also return the errors of VertexSpool; End writes the whole file and reports every
+// 64 vertices.
 std::unique_ptr<Recorder> MakeDeplRecorder(Settings settings);
 
 }  // namespace phrenic::record

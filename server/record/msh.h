@@ -6,7 +6,9 @@
 
 namespace phrenic::record {
 
-// Returns a recorder that keeps one frame, the first, and streams the others to the sink.
+// Returns a recorder that keeps one frame, the first, and streams the others to the sink. Writes millimetres: positions
+// with 9 digits, or displacements from the first frame with 6 (Settings::values). AddFrame returns INTERNAL if a frame
+// has another number of vertices than the first.
 std::unique_ptr<Recorder> MakeMshRecorder(Settings settings);
 
 }  // namespace phrenic::record

@@ -6,7 +6,9 @@
 
 namespace phrenic::record {
 
-// Returns a recorder that keeps one frame, the first, streams the others to the sink, and writes the .pvd last.
+// Returns a recorder that keeps one frame, the first, streams the others to the sink, and writes the .pvd last. The
+// sink gets a zip archive (Archive). Points and displacements are in millimetres; with Values::kDisplacements the
+// points stay those of the first frame. Begin writes nothing.
 std::unique_ptr<Recorder> MakePvdRecorder(Settings settings);
 
 }  // namespace phrenic::record

@@ -15,7 +15,8 @@
 
 namespace phrenic::record {
 
-// Receives the next bytes of the file. An error stops the recording.
+// Receives the next bytes of the file. An error stops the recording. The recorder calls it on its own caller's thread;
+// `bytes` are valid during the call.
 using Sink = std::function<absl::Status(std::string_view bytes)>;
 
 // A body in the file.
@@ -26,14 +27,16 @@ struct RecordedBody {
 
 // A scalar recorded with each frame, such as "tip x" [mm].
 struct Column {
-  std::string name, unit;
+  std::string name, unit;  // the unit is that of the numbers, such as "mm"
 };
 
+// The vertices of a frame are those of `bodies`, in this order.
 struct Recording {
   std::vector<RecordedBody> bodies;
   std::vector<Column> columns = {};
 };
 
+// Refers to its parts, which must live until AddFrame returns.
 struct RecordedFrame {
   double time;                         // [s]
   const Points& positions;             // of the vertices of all bodies, concatenated (3 x n) [m]
@@ -41,26 +44,32 @@ struct RecordedFrame {
 };
 
 // Writes one motion of one or more bodies to a sink. Call Begin once, AddFrame for each frame, End once. Methods return
-// the sink's first error. Not thread-safe.
+// the sink's first error. Not thread-safe. Format::make makes one for each file, and an export drives it on the thread
+// of its job. After an error the file is incomplete, and no further call is made.
 class Recorder {
  public:
   virtual ~Recorder() = default;
+  // The bodies are at the first frame, which AddFrame gets as well.
   virtual absl::Status Begin(const Recording& recording) = 0;
+  // Requires: times increase, and every frame has as many positions and numbers.
   virtual absl::Status AddFrame(const RecordedFrame& frame) = 0;
-  // Writes the rest. Calls `report` with the share of it that is written, in [0, 1]; an error from it cancels.
+  // Writes the rest. Calls `report` with the share of it that is written, in [0, 1]; an error from it cancels. A format
+  // that has written everything by then does not call it. `report` runs on the calling thread.
   virtual absl::Status End(const std::function<absl::Status(double share)>& report) = 0;
 };
 
-// What the file stores for each vertex.
+// What the file stores for each vertex. Displacements are from the first frame.
 enum class Values { kPositions, kDisplacements };
 
+// Each recorder takes what its format needs.
 struct Settings {
   Sink sink;
   Values values = Values::kPositions;  // one of Format::values, if there are any
   std::string stem = "motion";         // of file names in an archive
-  std::string spool_folder = {};       // for temporary files
+  std::string spool_folder = {};       // for temporary files; of .depl alone
 };
 
+// A row of the catalogue.
 struct Format {
   std::string name;
   std::string ending;  // file name extension, without its dot
@@ -75,10 +84,10 @@ struct Format {
   std::function<std::unique_ptr<Recorder>(Settings settings)> make = {};
 };
 
-// The catalogue of motion formats, one row each.
+// The catalogue of motion formats, one row each. It lives as long as the process. Thread-safe.
 const std::vector<Format>& Formats();
 
-// Returns the format of that name. INVALID_ARGUMENT lists the known names.
+// Returns the format of that name. INVALID_ARGUMENT lists the known names. `formats` may have more rows than Formats().
 absl::StatusOr<Format> FindFormat(const std::vector<Format>& formats, std::string_view name);
 
 }  // namespace phrenic::record

@@ -15,26 +15,39 @@
 namespace phrenic::service {
 
 // Thread-safe: the methods run on threads of their lanes. WatchFrames keeps no thread (WatchReactor).
+//
+// Each session's Publisher encodes frames on its own thread; the service adds viewers to it. Errors as in the proto of
+// each method.
 class FrameService final {
  public:
+  // Table, guard and metrics outlive the service.
   FrameService(session::Table& table, AccessGuard& guard, Metrics& metrics, const session::Limits& limits);
 
   // Adds the methods to the table. The service outlives it.
   void AddTo(CallTable& calls);
 
+  // On Lane::kStream. The geometry is constant, so a session may step meanwhile. OK also if the client disconnects.
   grpc::Status GetGeometry(grpc::CallbackServerContext* context, const v1::GetGeometryRequest* request,
                            ReplyStream<v1::GetGeometryResponse>* writer);
+  // On Lane::kQuick. Not counted towards the rate of requests. The response is the viewer's flow control.
   grpc::Status AckFrames(grpc::CallbackServerContext* context, const v1::AckFramesRequest* request,
                          v1::AckFramesResponse* response);
+  // On Lane::kQuick. The response is empty before the session's first basis.
   grpc::Status GetBasis(grpc::CallbackServerContext* context, const v1::GetBasisRequest* request,
                         v1::GetBasisResponse* response);
+  // On Lane::kSession. Waits for a copy of the state between two steps and evaluates the forces [N] on the lane's
+  // thread.
   grpc::Status GetForces(grpc::CallbackServerContext* context, const v1::GetForcesRequest* request,
                          v1::GetForcesResponse* response);
 
  private:
-  // Starts the stream, which then goes on without a thread. Returns an error if it cannot start.
+  // Starts the stream, which then goes on without a thread. Returns an error if it cannot start. On Lane::kQuick until
+  // the stream has started; a WatchReactor then serves the viewer. RESOURCE_EXHAUSTED above the limits of viewers,
+  // ALREADY_EXISTS for a watch_id that another viewer of the session has, INVALID_ARGUMENT for an unknown body, or for
+  // max_unacked_frames without a watch_id.
   absl::Status WatchFrames(ServedCall& call);
-  // Takes a seat in all and one of the session for the viewer.
+  // Takes a seat in all and one of the session for the viewer. The result holds both until it is destroyed.
+  // RESOURCE_EXHAUSTED names the limit and its flag.
   absl::StatusOr<FairShare::Hold> TakeSeats(const access::Caller& caller, const std::string& session);
 
   session::Table& table_;

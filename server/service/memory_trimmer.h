@@ -6,10 +6,12 @@
 
 namespace phrenic::service {
 
-// glibc keeps what was freed after a peak, such as thousands of calls at once. Not thread-safe.
+// glibc keeps what was freed after a peak, such as thousands of calls at once. Not thread-safe. The server has one,
+// which its maintenance thread calls every 2 s.
 class MemoryTrimmer {
  public:
-  // Gives freed memory back, unless hardly any was freed since the last time.
+  // Gives freed memory back, unless less than 8 MiB was freed since the last time. Trims the heaps of all threads of
+  // the process (malloc_trim).
   void Trim();
 
  private:

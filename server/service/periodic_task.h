@@ -13,12 +13,17 @@ namespace phrenic::service {
 
 // Calls `work` on its own thread, first one `pause` after construction and then one `pause` after each call returns.
 // The destructor waits for a call in progress.
+//
+// `work` must not throw and must not destroy the task. A slow call delays the next one, and calls never overlap. What
+// `work` uses outlives the task; the server therefore ends its tasks first.
 class PeriodicTask {
  public:
+  // Starts the thread.
   PeriodicTask(absl::Duration pause, std::function<void()> work)
       : thread_([this, pause, work = std::move(work)] {
           while (!ended_.WaitForNotificationWithTimeout(pause)) work();
         }) {}
+  // Takes as long as a call in progress; a pause ends at once.
   ~PeriodicTask() {
     ended_.Notify();
     thread_.join();
@@ -27,8 +32,8 @@ class PeriodicTask {
   PeriodicTask& operator=(const PeriodicTask&) = delete;
 
  private:
-  absl::Notification ended_;
-  std::thread thread_;
+  absl::Notification ended_;  // set by the destructor
+  std::thread thread_;        // last: it uses the others
 };
 
 }  // namespace phrenic::service

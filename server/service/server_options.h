@@ -16,6 +16,7 @@
 
 namespace phrenic::service {
 
+// The settings of phrenicd fill it (daemon/). Plain data; the server keeps copies of what it needs.
 struct ServerOptions {
   std::string listen;    // gRPC, "127.0.0.1:50051"; the system chooses port 0; empty: in-process calls only
   std::string web;       // web gateway, "127.0.0.1:8080"; the system chooses port 0; empty: no gateway
@@ -47,6 +48,9 @@ struct ServerOptions {
 // Checks the options against each other. Errors name the flag and the remedy: FAILED_PRECONDITION if other machines can
 // connect without TLS and insecure_listen is not set, or can reach gRPC itself and unguarded_listen is not set;
 // INVALID_ARGUMENT if options exclude each other or a certificate is bad; NOT_FOUND if a file or folder is missing.
+// FAILED_PRECONDITION also if Redis is on another machine without encryption and insecure_listen is not set. Does not
+// check the ranges of numbers. Reads certificates and looks for folders, but opens no socket. Server::Start calls it
+// first. Thread-safe.
 absl::Status CheckOptions(const ServerOptions& options);
 
 }  // namespace phrenic::service

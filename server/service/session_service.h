@@ -11,6 +11,13 @@
 namespace phrenic::service {
 
 // Thread-safe: the methods run on threads of their lanes. Errors as in the proto of each method.
+//
+// session::Table owns the sessions, and the stepping thread of each makes its changes, one at a time; the service has
+// no state and no lock. A change returns when it is saved and, in a cluster, copied (RunOnce). It needs the control
+// token of a caller that may change the session, else PERMISSION_DENIED.
+//
+// ABORTED: the session was not at the expected tick or revision. UNAVAILABLE: the server is shutting down, or cannot
+// know whether another server has the session; a repeat with the same request_id takes effect once at most.
 class SessionService final {
  public:
   // All outlive the service.
@@ -20,34 +27,51 @@ class SessionService final {
   // Adds the methods to the table. The service outlives it.
   void AddTo(CallTable& calls);
 
+  // On Lane::kWork, for as long as the compile takes; ends early with CANCELLED if the caller disconnects. The response
+  // alone has the owner's control token. RESOURCE_EXHAUSTED above the limits of sessions or of a scene's size.
   grpc::Status CreateSession(grpc::CallbackServerContext* context, const v1::CreateSessionRequest* request,
                              v1::CreateSessionResponse* response);
+  // On Lane::kQuick. Does not wait for a step.
   grpc::Status GetSession(grpc::CallbackServerContext* context, const v1::GetSessionRequest* request,
                           v1::GetSessionResponse* response);
+  // On Lane::kSession. Copies the state between two steps. FAILED_PRECONDITION if the session has diverged.
   grpc::Status ForkSession(grpc::CallbackServerContext* context, const v1::ForkSessionRequest* request,
                            v1::ForkSessionResponse* response);
+  // On Lane::kQuick. Sorted by id; 100 a page by default, 1000 at most. INVALID_ARGUMENT for another page size, and for
+  // a token that PageTokens::Open refuses.
   grpc::Status ListSessions(grpc::CallbackServerContext* context, const v1::ListSessionsRequest* request,
                             v1::ListSessionsResponse* response);
+  // On Lane::kSession. The owner's account and administrators need no control token. Streams end with NOT_FOUND.
   grpc::Status DeleteSession(grpc::CallbackServerContext* context, const v1::DeleteSessionRequest* request,
                              v1::DeleteSessionResponse* response);
+  // On Lane::kSession, as all below. NOT_FOUND also for a leader (in_step_with) that the caller may not see.
   grpc::Status PlaySession(grpc::CallbackServerContext* context, const v1::PlaySessionRequest* request,
                            v1::PlaySessionResponse* response);
+  // Takes effect after the step in progress. A StepSession in progress then ends with ABORTED.
   grpc::Status PauseSession(grpc::CallbackServerContext* context, const v1::PauseSessionRequest* request,
                             v1::PauseSessionResponse* response);
+  // Returns after the last step. Ends early with CANCELLED if the caller disconnects, unless the request has a
+  // request_id: a repeat then gets the result.
   grpc::Status StepSession(grpc::CallbackServerContext* context, const v1::StepSessionRequest* request,
                            v1::StepSessionResponse* response);
+  // Discards updates that wait for a tick. A StepSession in progress ends with ABORTED.
   grpc::Status ResetSession(grpc::CallbackServerContext* context, const v1::ResetSessionRequest* request,
                             v1::ResetSessionResponse* response);
+  // Sets the fields of the preset, then those of the request, in one change. The warnings do not stop it.
   grpc::Status UpdateParameters(grpc::CallbackServerContext* context, const v1::UpdateParametersRequest* request,
                                 v1::UpdateParametersResponse* response);
+  // INVALID_ARGUMENT without a pull and without release_others.
   grpc::Status PullSession(grpc::CallbackServerContext* context, const v1::PullSessionRequest* request,
                            v1::PullSessionResponse* response);
 
  private:
-  // Admits the call, has `make` add a session with its ControlBook to the table, and returns the session's status.
+  // Admits the call, has `make` add a session with its ControlBook to the table, and returns the session's status. The
+  // caller's account, if there is one, owns the new session. Not idempotent: a repeat without an id makes another
+  // session.
   template <class Request, class Response, class Make>
   grpc::Status Add(const grpc::CallbackServerContext& context, const Request& request, Response* response, Make make);
-  // Admits the call and applies `act` to its session, once per request_id.
+  // Admits the call and applies `act` to its session, once per request_id. `act` gets the session, and the caller if it
+  // wants it, runs on the lane's thread and returns the status. The errors of AdmitToSession, of RunOnce and of `act`.
   template <class Request, class Response, class Act>
   grpc::Status Change(const grpc::CallbackServerContext& context, const Request& request, Response* response, Act act);
 

@@ -19,7 +19,9 @@ namespace phrenic::session {
 // Then takes the steps and changes of the journal in this build; they are approximately those of the other one. If that
 // fails, continues from the saved state, with the last parameters. `carried_over` of the result says what was done.
 //
-// FAILED_PRECONDITION, with the session's id and the remedy, if something cannot be matched.
+// FAILED_PRECONDITION, with the session's id and the remedy, if something cannot be matched. Steps on the calling
+// thread, before the session exists, which may take seconds. A session that had diverged takes no trial step.
+// Thread-safe.
 absl::StatusOr<Replayed> CarryOver(const std::shared_ptr<const Model>& model, const store::SavedSession& saved);
 
 }  // namespace phrenic::session

@@ -6,11 +6,13 @@
 
 namespace phrenic::session {
 
+// Plain data, set from the server's options once and then constant. Beyond a limit a call returns RESOURCE_EXHAUSTED,
+// or the oldest entry makes room.
 struct Limits {
-  int sessions = 16;
-  int sessions_of_user = 8;  // on a server with accounts
-  int viewers = 64;          // of one session
-  int viewers_in_all = 256;
+  int sessions = 16;                                    // of a server, or of one of a cluster
+  int sessions_of_user = 8;                             // on a server with accounts
+  int viewers = 64;                                     // of one session
+  int viewers_in_all = 256;                             // of all sessions
   double session_cpu = 1;                               // share of a core for stepping one session; 1: no limit
   int exports = 2;                                      // running at the same time; comparisons as well
   int models = 4;                                       // compiled scenes kept for the next session
@@ -24,7 +26,7 @@ struct Limits {
   int uploads = 256;                                    // kept
   // Of each account, on a server with accounts.
   std::int64_t uploads_bytes_of_user = std::int64_t{256} << 20;
-  int uploads_of_user = 64;
+  int uploads_of_user = 64;   // kept
   double pause_minutes = 5;   // a session without viewers or calls plays on; 0: forever
   double delete_minutes = 0;  // a session without viewers or calls is kept; 0: forever
   double share = 0.75;        // fraction of viewers, exports, comparisons, checks and studies that one caller may have

@@ -11,12 +11,12 @@
 namespace phrenic::session {
 
 // The simulated time of a playing session [s], for sessions that play in step with it; infinity while it is not
-// playing, so that followers never wait. Any thread may read it.
+// playing, so that followers never wait. Any thread may read it. The session's SteppingLoop writes it.
 using ReachedTime = std::atomic<double>;
 
 // What PlaySession asks for.
 struct PlayRequest {
-  std::optional<double> speed = std::nullopt;  // simulated seconds per second; nullopt keeps the present speed
+  std::optional<double> speed = std::nullopt;  // simulated seconds per second; nullopt keeps the present speed; above 0
   bool as_fast_as_possible = false;
   double until = 0;                              // simulated time at which the session pauses [s]; 0 never pauses
   std::weak_ptr<const ReachedTime> leader = {};  // of the session that this one plays in step with
@@ -26,6 +26,7 @@ struct PlayRequest {
 // The speed, the end and the leader of a playing session. Not thread-safe: the stepping thread owns it.
 class Playback {
  public:
+  // Requires: the request is in range. Replaces end, leader and `keep_playing`.
   void Start(PlayRequest request);
   // Forgets the end time, and that the session plays on without viewers.
   void Stop() {
@@ -42,9 +43,12 @@ class Playback {
   // True if `time` [s] has reached the end.
   bool EndsAt(double time) const;
   // Returns the time up to which the session at `time` need not wait for its leader [s]: a frame ahead of it; infinity
-  // without a leader, or if the leader is too far behind to wait for.
+  // without a leader, or if the leader is too far behind to wait for. A frame is speed / kFramesPerSecond [s], with
+  // speed 1 while as fast as possible; too far is more than 2 s, and more than two frames. Reads the leader's time
+  // without a lock.
   double FurthestInStep(double time) const;
 
+  // The leader is not saved: a restored session plays on its own.
   void Save(v1::SavedMoment& moment) const;
   void Restore(const v1::SavedMoment& moment);
 

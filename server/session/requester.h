@@ -7,6 +7,8 @@
 
 namespace phrenic::session {
 
+// Services make one for each call; Models::Restore makes a trusted one. The thread that makes the call asks
+// `cancelled`.
 struct Requester {
   std::string owner = {};                     // account or guest (access::Caller::id()); empty without accounts
   bool all_files = false;                     // an administrator may name the files of every owner

@@ -9,7 +9,8 @@
 namespace phrenic::session {
 
 // Returns the SHA-256, in hexadecimal, of the serialized scene and each body's vertices, triangles and edges.
-// Thread-safe.
+// Thread-safe. Numbers are hashed as they lie in memory. A restarted server compares the hash with the saved one
+// (CompileSaved).
 std::string SceneHash(const Model& model);
 
 }  // namespace phrenic::session

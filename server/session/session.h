@@ -31,9 +31,9 @@
 
 namespace phrenic::session {
 
-// What a session starts with beside its model and state.
+// What a session starts with beside its model and state. Plain data, which Table fills.
 struct SessionOrigin {
-  ControlBook control;
+  ControlBook control;                                         // default: everybody controls
   std::shared_ptr<store::Journal> journal = nullptr;           // null: the session is not saved
   std::optional<v1::SavedMoment> saved_moment = std::nullopt;  // the last one of a session that continues
   std::int64_t epoch = 0;                                      // in a cluster
@@ -45,7 +45,9 @@ struct SessionOrigin {
 // and never in the middle of a step; the call returns when that is done and saved: steps survive the end of the
 // process, other changes a power failure as well (store::Durability). `token` identifies the caller, who gets
 // PERMISSION_DENIED unless they control the session (ControlBook::Check). In a cluster, a change returns UNAVAILABLE
-// and does nothing if another server may have the session (store::Ownership::CheckLease).
+// and does nothing if another server may have the session (store::Ownership::CheckLease). Table creates sessions; calls
+// in progress share them (std::shared_ptr), so that a session may outlive its deletion. A change waits for the step in
+// progress, never for a whole burst. Never call a change from the stepping thread: it would wait for itself.
 class Session {
  public:
   using Fork = session::Fork;
@@ -53,66 +55,86 @@ class Session {
   using Stepped = StepResult;
   using Access = SessionAccess;
   struct Updated {
-    v1::Session session;
-    std::vector<std::string> warnings;
+    v1::Session session;                // after the change
+    std::vector<std::string> warnings;  // names the time step if it is above the largest stable one
   };
 
   // Starts paused at `start`, which is a state of the model, or continues as `origin.saved_moment` says. Every field of
-  // the parameters is set and in range. `clock` outlives the session.
+  // the parameters is set and in range. `clock` outlives the session. Starts the stepping thread, which hands the first
+  // state to the journal; Flush waits for it.
   Session(std::string id, std::shared_ptr<const Model> model, Fork start, const Clock& clock, const Limits& limits,
           Origin origin = {});
+  // Ends the viewers with UNAVAILABLE, and waits for the stepping thread.
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
   const std::string& id() const { return id_; }
+  // The model is immutable; sessions of the same scene and exports share it.
   const Model& model() const { return *model_; }
   std::shared_ptr<const Model> shared_model() const { return model_; }
+  // Returns a copy of the latest status, with the present number of viewers. Does not wait for the stepping thread, so
+  // its time may be that of the last burst.
   v1::Session status() const { return reporter_.status(); }
+  // Uploaded files that the scene uses. Forks and exports share them, so that they can be saved again.
   const std::vector<Uploads::Held>& surfaces() const { return surfaces_; }
+  // Viewers subscribe here. It lives as long as the session.
   stream::Publisher& publisher() { return publisher_; }
   // The answers to requests that have an id.
   IdempotencyCache& answers() { return idempotency_cache_; }
 
   // Plays. A speed that is not set keeps the present one; `until` 0 never pauses. The session waits while it is a frame
   // ahead of `leader` (PlaySessionRequest.in_step_with). Returns FAILED_PRECONDITION if the session has diverged,
-  // INVALID_ARGUMENT if `until` is in the past.
+  // INVALID_ARGUMENT if `until` is in the past. `speed` is in simulated seconds per second, `until` a simulated time
+  // [s]. Ends a Step in progress with ABORTED.
   absl::StatusOr<v1::Session> Play(std::optional<double> speed, bool as_fast_as_possible, double until,
                                    std::string_view token = {}, std::weak_ptr<const ReachedTime> leader = {});
+  // The same, also with `keep_playing`: the session plays on without viewers.
   absl::StatusOr<v1::Session> Play(const PlayRequest& request, std::string_view token);
-  // The time that followers of this session read.
+  // The time that followers of this session read. [s]; infinity unless the session plays. It may outlive the session.
   std::shared_ptr<const ReachedTime> reached() const { return loop_.reached(); }
+  // Pauses a playing session, and ends a Step in progress with ABORTED.
   absl::StatusOr<v1::Session> Pause(std::string_view token = {});
   // Pauses, takes `ticks` steps and pauses again. Returns ABORTED if the session is not at `expected_tick`, if another
   // caller steps it, or if it is played, paused or reset meanwhile; CANCELLED as soon as `cancelled` returns true.
+  // Returns OUT_OF_RANGE if a step diverges, FAILED_PRECONDITION if the session had diverged before. Steps without
+  // regard to wall-clock time, as fast as the session's CPU share allows; the calling thread asks `cancelled` every 50
+  // ms. The result has the state after the last step, and its hash.
   absl::StatusOr<Stepped> Step(std::int64_t ticks, std::optional<std::int64_t> expected_tick,
                                absl::FunctionRef<bool()> cancelled, std::string_view token = {});
-  // Returns to t = 0 and discards waiting updates.
+  // Returns to t = 0 and discards waiting updates. Keeps parameters and pulls, forgets a divergence, and pauses. Ends a
+  // Step in progress with ABORTED.
   absl::StatusOr<v1::Session> Reset(std::string_view token = {});
   // Changes the fields that are set in `changes`, which are in range, at `at_tick` or now. Returns ABORTED if the
   // session is not at `expected_revision`, FAILED_PRECONDITION if `at_tick` is past, RESOURCE_EXHAUSTED if kMostWaiting
-  // updates wait.
+  // updates wait. Computes the largest stable step on the calling thread, which may take a while; concurrent updates
+  // wait for each other.
   absl::StatusOr<Updated> Update(const v1::Parameters& changes, std::optional<std::int64_t> expected_revision,
                                  std::optional<std::int64_t> at_tick = std::nullopt, std::string_view token = {})
       ABSL_LOCKS_EXCLUDED(update_mutex_);
   // Pulls vertices, or releases them (phrenic::ChangePulls). INVALID_ARGUMENT names a vertex that cannot be pulled.
+  // RESOURCE_EXHAUSTED past kMostPulls. `release_others` removes the pulls on all other vertices.
   absl::StatusOr<v1::Session> Pull(const PullList& pulls, bool release_others, std::string_view token = {});
 
-  // Who may see the session.
+  // Who may see the session. As last reported; does not wait for the stepping thread.
   std::shared_ptr<const Access> access() const { return board_.access(); }
-  // Notes that a caller asked for the session now.
+  // Notes that a caller asked for the session now. Table::Find calls it.
   void NoteAttention() { attended_ = absl::ToUnixNanos(clock_.Now()); }
-  // Returns the time of the last NoteAttention.
+  // Returns the time of the last NoteAttention. Table::Tend pauses and deletes sessions by it.
   absl::Time attended() const { return absl::FromUnixNanos(attended_); }
-  // Pauses the session without regard to control.
+  // Pauses the session without regard to control. For Table::Tend. Does nothing if the session has ended.
   void Rest();
-  // Announces the status to viewers if `not_saved` has changed since the last call. Not thread-safe.
+  // Announces the status to viewers if `not_saved` has changed since the last call. Not thread-safe. Only Table::Tend
+  // calls it.
   void AnnounceNotSaved();
-  // Returns OK if the token's bearer may change the session.
+  // Returns OK if the token's bearer may change the session. Renews the bearer's time. Otherwise returns
+  // PERMISSION_DENIED, or the error of store::Ownership::CheckLease.
   absl::Status CheckControl(std::string_view token);
-  // Changes control by `act`, tells viewers, and returns the errors of `act`, or of Acknowledge.
+  // Changes control by `act`, tells viewers, and returns the errors of `act`, or of Acknowledge. `act` runs on the
+  // stepping thread, at the time `now` of the session's clock. Also waits until the change is in the store.
   absl::StatusOr<v1::Control> ChangeControl(absl::FunctionRef<absl::Status(ControlBook& book, absl::Time now)> act);
-  // Shows viewers the camera of the one who controls.
+  // Shows viewers the camera of the one who controls. PERMISSION_DENIED unless the bearer alone controls
+  // (ControlBook::CheckAlone). The camera is not saved.
   absl::Status ShowCamera(const v1::Camera& camera, std::string_view token);
 
   // Waits until everything that calls have returned is in the store. Returns the errors of store::Journal::Flush.
@@ -123,10 +145,12 @@ class Session {
   // Removes the session from the store. Requires: Stop was not called yet.
   void Forget() { saver_.Forget(); }
   // Copies the present state, from which another run may continue. FAILED_PRECONDITION if the session has diverged.
+  // Waits for the step in progress; the copy is independent of the session.
   absl::StatusOr<Fork> MakeFork();
   // Waits until the stepping thread has handed its last state to the store. Requires: Stop was called.
   void AwaitEnd() const { loop_.AwaitEnd(); }
-  // Ends the stepping thread soon and all viewers with `reason`, which later calls return.
+  // Ends the stepping thread soon and all viewers with `reason`, which later calls return. Does not wait for the
+  // thread. A second call has no effect.
   void Stop(const absl::Status& reason);
 
  private:
@@ -138,7 +162,7 @@ class Session {
   absl::StatusOr<v1::Session> Change(std::string_view token, absl::FunctionRef<absl::Status()> act);
 
   const std::string id_;
-  const std::shared_ptr<const Model> model_;
+  const std::shared_ptr<const Model> model_;  // shared with forks and exports
   const std::vector<Uploads::Held> surfaces_;
   const Clock& clock_;
   stream::Publisher publisher_;
@@ -146,7 +170,7 @@ class Session {
   absl::Mutex update_mutex_;            // held by one call of Update at a time
   std::atomic<std::int64_t> attended_;  // [ns] since 1970
   std::string announced_not_saved_;     // of AnnounceNotSaved
-  StatusBoard board_;
+  StatusBoard board_;                   // read by any thread, written by the stepping thread
   SessionSaver saver_;
   SessionReporter reporter_;
   SteppingLoop loop_;  // the last: its thread uses the others

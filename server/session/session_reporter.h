@@ -21,7 +21,7 @@
 
 namespace phrenic::session {
 
-// Everything that changes in a session, apart from its viewers. The stepping thread owns it.
+// Everything that changes in a session, apart from its viewers. The stepping thread owns it. Not thread-safe.
 struct RunningSession {
   Run run;
   ControlBook control;
@@ -36,7 +36,8 @@ struct RunningSession {
   void Restore(const v1::SavedMoment& saved);
 };
 
-// The stepping thread calls it, except for status(), which any thread may call.
+// The stepping thread calls it, except for status(), which any thread may call. Session owns it. Other threads see what
+// it writes to the board; no method waits for viewers or the disk.
 class SessionReporter {
  public:
   // All outlive the reporter.
@@ -46,15 +47,18 @@ class SessionReporter {
   // Returns the status with the number of viewers, and why it is not saved.
   v1::Session status() const;
 
-  // Writes the whole status, announces it to viewers, and saves the session.
+  // Writes the whole status, announces it to viewers, and saves the session. The first report comes from the loop's
+  // constructor, before its thread starts.
   void Report(const RunningSession& session);
-  // Reports control if it has changed since the last report.
+  // Reports control if it has changed since the last report. A renewal of the holder's time goes to the board alone.
+  // Stops showing a camera if another person controls now.
   void ReportControl(const RunningSession& session);
   // Reports the time of a running session: to viewers if `measured`, when its pace is new; to the store when it is due.
   void ReportProgress(const RunningSession& session, bool measured, absl::Time now);
   // Saves the last state of a session that ends.
   void ReportEnd(const RunningSession& session);
-  // Offers a frame of the present state to viewers, unless the newest frame has the same tick.
+  // Offers a frame of the present state to viewers, unless the newest frame has the same tick. Copies the state and the
+  // parameters; viewers may skip the frame.
   void OfferFrame(const RunningSession& session, absl::Time now);
   // Makes the next OfferFrame offer a frame in any case, and the next save begin at t = 0.
   void NoteReset();
@@ -62,14 +66,16 @@ class SessionReporter {
   void ShowCamera(const RunningSession& session, const v1::Camera& camera);
 
  private:
+  // Writes all fields that the session's own thread knows, with the residuals of the constraints [m].
   void WriteStatus(const RunningSession& session, v1::Session& status) const;
+  // Adds to `status` what only the store needs: playback, tokens, waiting updates.
   static v1::SavedMoment MomentOf(const RunningSession& session, v1::Session status);
 
   const Clock& clock_;
   StatusBoard& board_;
   SessionSaver& saver_;
   stream::Publisher& publisher_;
-  std::int64_t frames_ = 0;
+  std::int64_t frames_ = 0;            // offered so far: the sequence number of the newest
   std::int64_t framed_tick_ = -1;      // of the newest frame
   std::int64_t reported_control_ = 0;  // the revision of the control that was reported last
   std::string camera_of_;              // the controller who shows a camera; empty: none is shown

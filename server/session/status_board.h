@@ -21,15 +21,18 @@ struct SessionAccess {
   std::vector<ControlState::Link> links;
 };
 
-// The stepping thread writes the status between two steps; any thread reads a copy.
+// The stepping thread writes the status between two steps; any thread reads a copy. Thread-safe. mutex_ is held while a
+// status is copied, and never while the session steps.
 class StatusBoard {
  public:
   explicit StatusBoard(v1::Session first) : status_(std::move(first)) {}
 
+  // The number of viewers and `not_saved` are not in it (SessionReporter::status).
   v1::Session Read() const ABSL_LOCKS_EXCLUDED(mutex_) {
     absl::MutexLock lock(&mutex_);
     return status_;
   }
+  // Null before the first report; the object never changes.
   std::shared_ptr<const SessionAccess> access() const ABSL_LOCKS_EXCLUDED(mutex_) {
     absl::MutexLock lock(&mutex_);
     return access_;

@@ -19,13 +19,17 @@
 
 namespace phrenic::stream {
 
-// Caches the encodings of the newest snapshot. Not thread-safe: only the publisher's thread calls it.
+// Caches the encodings of the newest snapshot. Not thread-safe: only the publisher's thread calls it. Publisher owns
+// it. It keeps at most nine codecs, each with its rest shape.
 class Encoder {
  public:
+  // `layout` is that of `model` and outlives the encoder.
   Encoder(std::shared_ptr<const Model> model, const Layout& layout);
 
   // Returns a WatchFramesResponse with the frame in that encoding; null if a number of the frame is not finite.
-  // Positions that the codec cannot encode within the bound are encoded with CODEC_RAW.
+  // Positions that the codec cannot encode within the bound are encoded with CODEC_RAW. A snapshot with another
+  // sequence number replaces the cached one. Without a basis of the requested epoch, CODEC_BASIS becomes
+  // CODEC_PREDICTED. The frame names the codec and the bound that it has.
   Bytes Encode(const Snapshot& snapshot, const FrameEncoding& encoding);
   // Returns the number of position encodings so far.
   std::int64_t encodings() const { return encodings_; }
@@ -37,7 +41,9 @@ class Encoder {
 
   // Makes the frame unless it is cached. Returns false if it has numbers that are not finite.
   bool Make(const Snapshot& snapshot);
+  // Writes codec, bound [mm], positions and poses.
   void SetPositions(const FrameEncoding& encoding, v1::Frame& frame);
+  // Returns a cached codec or makes one.
   std::shared_ptr<const Codec> FindCodec(const Chosen& chosen);
   // Passes the frame to the basis maker, once.
   void LookForBasis(absl::Time made);
@@ -46,13 +52,13 @@ class Encoder {
 
   const std::shared_ptr<const Model> model_;
   const Layout& layout_;
-  const std::vector<int> streamed_;
-  std::int64_t sequence_ = -1;
-  bool sendable_ = false;
-  v1::Frame numbers_;  // without positions and poses
-  std::string poses_;
-  Floats positions_;  // of all streamed bodies
-  std::map<FrameEncoding, Bytes> made_;
+  const std::vector<int> streamed_;      // indices of bodies, ascending
+  std::int64_t sequence_ = -1;           // of the cached snapshot
+  bool sendable_ = false;                // its numbers are finite
+  v1::Frame numbers_;                    // without positions and poses
+  std::string poses_;                    // encoded
+  Floats positions_;                     // of all streamed bodies
+  std::map<FrameEncoding, Bytes> made_;  // of the cached snapshot
   std::map<Chosen, std::shared_ptr<const Codec>> codecs_;
   std::unique_ptr<BasisMaker> maker_;                  // from the first request for CODEC_BASIS
   bool shown_ = false;                                 // true if maker_ has the current frame
@@ -60,6 +66,7 @@ class Encoder {
   std::int64_t encodings_ = 0;
 };
 
+// Return a WatchFramesResponse with the status or the camera. Thread-safe.
 StatusUpdate EncodeSession(const v1::Session& session);
 Bytes EncodeCamera(const v1::Camera& camera);
 

@@ -14,14 +14,16 @@ namespace phrenic::stream {
 
 // A copy of the stepping thread's state. Immutable once shared.
 struct Snapshot {
-  std::int64_t sequence = 0;
-  State state;
-  v1::Parameters parameters;
-  absl::Time made;
+  std::int64_t sequence = 0;  // from 1, for each frame that a session offers
+  State state;                // positions in metres
+  v1::Parameters parameters;  // at the same tick
+  absl::Time made;            // on the server's clock; clients see it as unix_nanos
 };
 
 // Computes the positions of every streamed body and every pose of the snapshot. INTERNAL if a number is not finite as
-// float32; such a frame is not sent.
+// float32; such a frame is not sent. Positions and poses are little-endian float32 [m], body after body in the order of
+// the model (proto/README.md); a pose is a quaternion x, y, z, w and a translation. Adds probes, scalar coordinates and
+// measures. Thread-safe; the publisher's thread calls it.
 absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, const Snapshot& snapshot);
 
 }  // namespace phrenic::stream

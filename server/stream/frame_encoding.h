@@ -16,7 +16,7 @@ namespace phrenic::stream {
 inline constexpr int kDefaultBoundLevel = 6;   // 0.1 mm
 inline constexpr int kCoarsestBoundLevel = 9;  // 1 mm: the coarsest bound that flow control chooses
 
-// Returns the bound of a level [mm]: 0.001, 0.002, 0.005, 0.01 ...
+// Returns the bound of a level [mm]: 0.001, 0.002, 0.005, 0.01 ... Requires: bound_level >= 0.
 inline double BoundMillimetres(int bound_level) {
   constexpr std::array<double, 3> kSteps = {1, 2, 5};
   return kSteps[bound_level % 3] * std::pow(10.0, bound_level / 3 - 3);
@@ -29,13 +29,15 @@ inline int BoundLevelWithin(double millimetres) {
   return bound_level;
 }
 
+// Plain data, ordered so that it can be a key. Viewer::encoding makes it from the viewer's request and its flow
+// control.
 struct FrameEncoding {
-  bool numbers_only = false;  // omits positions and poses
-  v1::Codec codec = v1::CODEC_RAW;
-  int bound_level = kDefaultBoundLevel;
-  bool chosen = false;           // true: only the vertices of `bodies`
-  std::vector<int> bodies = {};  // streamed ones, ascending
-  std::int64_t basis_epoch = 0;  // of the viewer's basis; only for CODEC_BASIS
+  bool numbers_only = false;             // omits positions and poses
+  v1::Codec codec = v1::CODEC_RAW;       // of the positions
+  int bound_level = kDefaultBoundLevel;  // ignored by CODEC_RAW
+  bool chosen = false;                   // true: only the vertices of `bodies`
+  std::vector<int> bodies = {};          // streamed ones, ascending
+  std::int64_t basis_epoch = 0;          // of the viewer's basis; only for CODEC_BASIS
 
   // clang-tidy mistakes the zero in a defaulted comparison for a null pointer.
   auto operator<=>(const FrameEncoding&) const = default;  // NOLINT(modernize-use-nullptr)

@@ -9,11 +9,14 @@
 
 namespace phrenic::stream {
 
-// Immutable; thread-safe.
+// Immutable; thread-safe. Publisher makes one for its model. Streamed bodies are those that deform: simulated ones, and
+// surfaces skinned to them; a rigid body follows its pose, a still one stays at rest.
 class Layout {
  public:
+  // Keeps nothing of `model`.
   explicit Layout(const Model& model);
 
+  // Requires, here and below: 0 <= body < model.bodies.size().
   v1::Placement placement(int body) const { return placements_[body].placement; }
   // Returns the index of the body's first vertex among the streamed vertices; 0 if the body is not streamed.
   int first_vertex(int body) const { return placements_[body].first_vertex; }

@@ -17,17 +17,25 @@ namespace phrenic::service {
 
 // Filled before the server starts; then thread-safe. Handlers run on threads of their lane (CallLimits), may block
 // there, and see with context->IsCancelled() that their client is gone.
+//
+// The server has one table; each service adds its methods to it (AddTo). It has no lock, because it does not change
+// once gRPC calls it. Several threads may run the same handler at once, so a service locks what it changes.
 class CallTable final : public grpc::CallbackGenericService {
  public:
+  // A handler returns OK with a response, or a status without one; the response is then not sent. The context, the
+  // request and the response live until the handler returns. A streaming handler writes its responses before it
+  // returns.
   template <class Service, class Request, class Response>
   using Unary = grpc::Status (Service::*)(grpc::CallbackServerContext*, const Request*, Response*);
   template <class Service, class Request, class Response>
   using Streaming = grpc::Status (Service::*)(grpc::CallbackServerContext*, const Request*, ReplyStream<Response>*);
 
-  // The references outlive the table.
+  // The references outlive the table. They admit calls by their headers and limit them.
   CallTable(AccessGuard& guard, CallLimits& limits) : guard_(guard), limits_(limits) {}
 
-  // Adds the method whose request has the handler's type. `service` outlives the table.
+  // Adds the method whose request has the handler's type. `service` outlives the table. access/rules.cc must have a
+  // rule for the request type: the rule gives the method its name. Call it before the server starts. The request is
+  // parsed on the lane's thread. INVALID_ARGUMENT if the bytes are not a Request.
   template <class Service, class Request, class Response>
   void Add(Lane lane, Service& service, Unary<Service, Request, Response> handler) {
     AddParsed<Request>(lane, [&service, handler](ServedCall& call, const Request& request) {
@@ -37,6 +45,7 @@ class CallTable final : public grpc::CallbackGenericService {
       return status;
     });
   }
+  // The same for a method that answers with a stream.
   template <class Service, class Request, class Response>
   void Add(Lane lane, Service& service, Streaming<Service, Request, Response> handler) {
     AddParsed<Request>(lane, [&service, handler](ServedCall& call, const Request& request) {
@@ -45,23 +54,29 @@ class CallTable final : public grpc::CallbackGenericService {
     });
   }
   // Adds a method whose handler has the call itself: it parses the request, and may go on without a thread.
+  // FrameService::WatchFrames is such a method, since its stream goes on without a thread.
   template <class Request>
   void AddRaw(Lane lane, Method::Handler handler) {
     const access::Rule* rule = access::RuleOf(Request::descriptor()->full_name());
     Add("phrenic.v1", {rule, lane, std::move(handler)});
   }
-  // Adds method.rule->method of a package.
+  // Adds method.rule->method of a package. If the path has a method already, that one stays. Requires: `method.rule`
+  // outlives the table.
   void Add(const std::string& package, Method method);
 
   // Returns the method of a path, "/phrenic.v1.ServerService/GetServer", and its rule; null if the method is unknown.
+  // The method lives as long as the table.
   const Method* Find(const std::string& path) const;
   const access::Rule* RuleOf(const std::string& path) const;
-  // Returns the full names of the services, sorted.
+  // Returns the full names of the services, sorted. "phrenic.v1.SessionService" is one. Reflection lists them.
   std::vector<std::string> Services() const;
 
+  // gRPC calls it for each call, on its own threads, when it has the headers. The call deletes itself after OnDone; one
+  // of an unknown method ends with UNIMPLEMENTED.
   grpc::ServerGenericBidiReactor* CreateReactor(grpc::GenericCallbackServerContext* context) override;
 
  private:
+  // Frees the bytes of the request before the handler runs, so that a long call does not keep them.
   template <class Request, class Handler>
   void AddParsed(Lane lane, Handler handler) {
     AddRaw<Request>(lane, [handler](ServedCall& call) -> std::optional<grpc::Status> {
@@ -76,7 +91,7 @@ class CallTable final : public grpc::CallbackGenericService {
 
   AccessGuard& guard_;
   CallLimits& limits_;
-  std::map<std::string, Method> methods_;  // by path
+  std::map<std::string, Method> methods_;  // by path; calls in progress point to its methods
 };
 
 }  // namespace phrenic::service

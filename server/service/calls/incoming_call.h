@@ -25,62 +25,80 @@ namespace phrenic::service {
 // the largest size. A generic call is seen when its headers are there: this class refuses it then, if its caller has no
 // account or too many calls, and reads few requests at a time, each within a time. gRPC's threads call it; it deletes
 // itself after OnDone.
+//
+// ServedCall::Make and ForwardedCall::Make create it in a shared pointer. It holds itself from Begin to OnDone, and
+// callbacks that wait hold it too, so it may live a little longer. Reactions run on gRPC's threads and must not block.
+// The guard and the limits outlive it; the context is valid until OnDone.
 class IncomingCall : public grpc::ServerGenericBidiReactor, public std::enable_shared_from_this<IncomingCall> {
  public:
   IncomingCall(AccessGuard& guard, CallLimits& limits, grpc::GenericCallbackServerContext& context)
       : guard_(guard), limits_(limits), context_(context) {}
 
   // Admits the call by its headers, and reads the request. `rule` of its method; null: there is no such method. The
-  // request of an open method is empty, and is not read. Call once, before gRPC gets the reactor.
+  // request of an open method is empty, and is not read. Call once, before gRPC gets the reactor. May run OnRequest
+  // before it returns.
   // Errors: UNIMPLEMENTED; UNAUTHENTICATED; RESOURCE_EXHAUSTED; DEADLINE_EXCEEDED if the request is not complete in
   // time.
   void Begin(const access::Rule* rule);
 
+  // Not to be used after OnDone.
   grpc::GenericCallbackServerContext& context() { return context_; }
 
+  // Reactions of grpc::ServerGenericBidiReactor: the read has ended, the client has gone away or its deadline has
+  // passed, the call is over. An override of OnDone calls the base's last.
   void OnReadDone(bool ok) final;
   void OnCancel() override ABSL_LOCKS_EXCLUDED(mutex_);
   void OnDone() override;
 
  protected:
-  // Called when request() is complete. Must not block.
+  // Called when request() is complete. Must not block. Runs on the thread that completed the read, and once for each
+  // request of a conversation.
   virtual void OnRequest() = 0;
-  // Called instead if the client has ended a call without a further request.
+  // Called instead if the client has ended a call without a further request. INVALID_ARGUMENT unless a derived class
+  // allows it.
   virtual void OnNoRequest() { FinishOnce({grpc::StatusCode::INVALID_ARGUMENT, "the call has no request"}); }
 
+  // Returns the request that was read last. Not to be used while a read is in progress.
   grpc::ByteBuffer& request() { return request_; }
+  // Returns the name under which the limits count this call (AccessGuard::KeyOf); one name for all callers without an
+  // account or a link on a server with accounts.
   const std::string& caller() const { return caller_; }
   CallLimits& limits() { return limits_; }
-  // Reads the next request, within `time`, after waiting for a place in `share`.
+  // Reads the next request, within `time`, after waiting for a place in `share`. The time begins with the place, which
+  // is given back when the read ends. DEADLINE_EXCEEDED ends the call. Requires: no read is in progress.
   void Read(FairShare& share, std::chrono::milliseconds time) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Waits for a place in `share`. Finishes the call if too many wait, or if its
-  // client goes away.
+  // Waits for a place in `share`. Finishes the call if too many wait, or if its client goes away. `granted` runs at
+  // most once, at once or on a thread that gives a place back, and keeps the call alive. RESOURCE_EXHAUSTED or
+  // CANCELLED ends the call. One wait at a time.
   void Await(FairShare& share, FairShare::Granted granted) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Finishes the call, unless that was done.
+  // Finishes the call, unless that was done. Any thread may call it; the first call counts.
   void FinishOnce(const grpc::Status& status);
   // The same, after one message. `message` lives until OnDone.
   void FinishOnce(const grpc::ByteBuffer& message, const grpc::Status& status);
 
  private:
+  // Starts the read and the alarm that ends the call after `time`.
   void StartReading(std::chrono::milliseconds time);
+  // Ends the present wait, and the call with CANCELLED. Does nothing if the place was granted.
   void Withdraw() ABSL_LOCKS_EXCLUDED(mutex_);
 
   AccessGuard& guard_;
   CallLimits& limits_;
   grpc::GenericCallbackServerContext& context_;
-  std::shared_ptr<IncomingCall> self_;  // keeps the reactor alive until OnDone
-  std::string caller_;
-  grpc::ByteBuffer request_;
-  FairShare::Hold in_flight_, reading_;
+  std::shared_ptr<IncomingCall> self_;      // keeps the reactor alive until OnDone
+  std::string caller_;                      // constant after Begin
+  grpc::ByteBuffer request_;                // written by gRPC during a read
+  FairShare::Hold in_flight_, reading_;     // of the whole call; of the read in progress
   std::optional<grpc::Alarm> alarm_;        // of the read
   std::atomic<bool> read_pending_ = false;  // neither complete nor expired
-  std::atomic<bool> finished_ = false;
-  std::atomic<bool> cancelled_ = false;  // can be read when the call, and its context with it, may be done
+  std::atomic<bool> finished_ = false;      // FinishOnce was called
+  std::atomic<bool> cancelled_ = false;     // can be read when the call, and its context with it, may be done
 
+  // Guards the wait alone: OnCancel and the thread that waits may meet.
   absl::Mutex mutex_;
   std::uint64_t waits_ ABSL_GUARDED_BY(mutex_) = 0;       // calls of Await so far
   FairShare* awaited_ ABSL_GUARDED_BY(mutex_) = nullptr;  // by the last of them
-  std::uint64_t ticket_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::uint64_t ticket_ ABSL_GUARDED_BY(mutex_) = 0;      // of the wait in awaited_
 };
 
 }  // namespace phrenic::service

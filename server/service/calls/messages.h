@@ -12,21 +12,24 @@
 
 namespace phrenic::service {
 
-// Parses a message without copying its bytes. Returns false if they are not a `message`. Thread-safe.
+// Parses a message without copying its bytes. Returns false if they are not a `message`, which is then only partly
+// filled; its previous content is gone in any case. Thread-safe.
 inline bool Parse(const grpc::ByteBuffer& bytes, google::protobuf::Message& message) {
   grpc::ByteBuffer shared = bytes;  // shares the slices; the reader needs a non-const buffer
   grpc::ProtoBufferReader reader(&shared);
   return message.ParseFromZeroCopyStream(&reader);
 }
 
-// Returns the bytes of a message. Thread-safe.
+// Returns the bytes of a message. Thread-safe. The bytes lie in one slice that the buffer owns, so the message need not
+// outlive it. Requires: no other thread changes the message.
 inline grpc::ByteBuffer Serialize(const google::protobuf::MessageLite& message) {
   grpc::Slice slice(message.ByteSizeLong());
   message.SerializeWithCachedSizesToArray(const_cast<std::uint8_t*>(slice.begin()));
   return grpc::ByteBuffer(&slice, 1);
 }
 
-// Returns the string field "session_id" of a request type; null if it has none.
+// Returns the string field "session_id" of a request type; null if it has none. AccessGuard reads the session of a call
+// by it, and SessionRouter the session by which it routes. The field lives as long as `request`. Thread-safe.
 inline const google::protobuf::FieldDescriptor* SessionIdField(const google::protobuf::Descriptor& request) {
   const auto* field = request.FindFieldByName("session_id");
   const bool is_string = field != nullptr && field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_STRING;

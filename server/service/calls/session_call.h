@@ -14,12 +14,16 @@
 
 namespace phrenic::service {
 
+// An admitted call. `session` is never null, and stays alive for the call even if another call deletes it; its methods
+// then return the reason of its end.
 struct SessionCall {
   access::Caller caller;
   std::shared_ptr<session::Session> session;
 };
 
-// Admits a call and finds the session that its request names. Thread-safe.
+// Admits a call and finds the session that its request names. Thread-safe. Call it first, before anything of the
+// session is read. It counts as attention to the session (Table::Tend), which keeps an idle session from being paused
+// or deleted. Does not check control: Session's methods do, by the token.
 // Errors: those of AccessGuard::Admit and of Table::Find.
 template <class Request>
 absl::StatusOr<SessionCall> AdmitToSession(AccessGuard& guard, const session::Table& table,

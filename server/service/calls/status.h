@@ -13,7 +13,8 @@
 namespace phrenic::service {
 
 // Keeps code and message; the codes of both have equal numbers. Cuts a message that quotes so much of a request that it
-// would not fit into HTTP/2 trailers (8 KiB).
+// would not fit into HTTP/2 trailers (8 KiB). Details of the status (payloads) are lost. The message is cut at 2 KiB,
+// between two characters of UTF-8. Pure function, thread-safe.
 inline grpc::Status ToGrpc(const absl::Status& status) {
   constexpr std::size_t kMostBytes = 2048;  // up to three times as many when they are escaped
   if (status.ok()) return grpc::Status::OK;

@@ -6,11 +6,14 @@
 namespace phrenic::service {
 
 // The caller's IP address. The web gateway and the session router set it for calls that they make within the process;
-// both remove it from what clients send.
+// both remove it from what clients send. PeerOf reads it, for calls within the process only. Access rules, limits and
+// the audit log rely on it.
 inline constexpr char kPeerKey[] = "x-phrenic-peer";
-// The session that a call is about; set by clients, read by the session router and by proxies.
+// The session that a call is about; set by clients, read by the session router and by proxies. The router uses it only
+// if the request has no session_id. List methods ignore it.
 inline constexpr char kSessionKey[] = "x-session-id";
-// The address of the server that forwarded the call. A forwarded call is never forwarded again.
+// The address of the server that forwarded the call. A forwarded call is never forwarded again. A client that sends it
+// reaches this server alone: a session of another server is then UNAVAILABLE to it.
 inline constexpr char kForwardedByKey[] = "x-phrenic-via";
 
 }  // namespace phrenic::service

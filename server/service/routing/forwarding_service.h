@@ -12,11 +12,18 @@
 namespace phrenic::service {
 
 // Thread-safe. The references outlive it.
+//
+// A server in a cluster registers it with a gRPC server of its own, the only one that listens, and passes its own calls
+// in process to the server of CallTable. A call is admitted by its headers here, and again, with its request, by the
+// server that handles it.
 class ForwardingService final : public grpc::CallbackGenericService {
  public:
+  // `calls` gives the methods and their rules; its handlers are not called. `limits` are those of this gRPC server.
   ForwardingService(SessionRouter& router, const CallTable& calls, AccessGuard& guard, CallLimits& limits)
       : router_(router), calls_(calls), guard_(guard), limits_(limits) {}
 
+  // gRPC calls it for each call, on its own threads, when it has the headers. The call deletes itself after OnDone. A
+  // method that the table lacks ends with UNIMPLEMENTED.
   grpc::ServerGenericBidiReactor* CreateReactor(grpc::GenericCallbackServerContext* context) override {
     return ForwardedCall::Make(router_, guard_, limits_, calls_.RuleOf(context->method()), *context);
   }

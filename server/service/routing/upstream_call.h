@@ -18,27 +18,36 @@
 namespace phrenic::service {
 
 // Thread-safe. gRPC's threads call the handlers, one at a time.
+//
+// ForwardedCall makes one for each target. The object holds itself from Make until `done` has run, so a call that is
+// not started is never destroyed. The handlers hold the ForwardedCall.
 class UpstreamCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
  public:
+  // A call that is to be made. Plain data.
   struct Request {
-    std::string method;  // "/phrenic.v1.SessionService/GetSession"
-    grpc::ByteBuffer message;
-    Metadata metadata;
-    std::chrono::system_clock::time_point deadline;
+    std::string method;                              // "/phrenic.v1.SessionService/GetSession"
+    grpc::ByteBuffer message;                        // serialized; the only one
+    Metadata metadata;                               // checked by Start
+    std::chrono::system_clock::time_point deadline;  // time_point::max(): none
   };
+  // The handlers must not block.
   struct Handlers {
     // Returns true to read the next message at once; after false the owner calls ReadNext.
     std::function<bool(const grpc::ByteBuffer& message)> message;
-    // Called last. No method may be called afterwards.
+    // Called last. No method may be called afterwards. Called exactly once, also after an error, a timeout or Cancel.
     std::function<void(const grpc::Status& status)> done;
   };
 
   static std::shared_ptr<UpstreamCall> Make(Request request, Handlers handlers);
-  // Call once. Errors of PrepareContext reach the handler `done`, possibly before Start returns.
+  // Call once. Errors of PrepareContext reach the handler `done`, possibly before Start returns. Reads the first
+  // message. The stub lives until Start returns.
   void Start(grpc::GenericStub& stub);
+  // Requires: `message` has returned false for the previous one.
   void ReadNext() { StartRead(&incoming_); }
+  // The call then ends with CANCELLED, if it has not ended. May be called before Start.
   void Cancel() { context_.TryCancel(); }
 
+  // Reactions of gRPC, on its threads.
   void OnReadDone(bool ok) override;
   void OnDone(const grpc::Status& status) override;
 

@@ -10,7 +10,9 @@ namespace phrenic::service {
 
 // True if a request with this Origin header may be answered: the server's own origin (`host` is the Host header), a
 // loopback origin such as "http://localhost:5173", an origin in `allowed`, or no origin, as programs send none.
-// Thread-safe.
+// Thread-safe. A page of a loopback origin may call a server on another machine too: it comes from a program of its
+// user. The entries of `allowed` are compared as text, with scheme and port. The opaque origin "null" is refused unless
+// `allowed` has it. `host` must have been checked (CheckHost), since a page chooses its own name.
 bool IsAllowedOrigin(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed);
 
 }  // namespace phrenic::service

@@ -10,19 +10,23 @@
 
 namespace phrenic::service {
 
+// A file that exists, and the headers that go with it. The file may change or vanish before it is read.
 struct StaticFile {
-  std::string path;
-  std::string content_type;
+  std::string path;           // absolute, without symbolic links
+  std::string content_type;   // ContentTypeOf
   std::string etag;           // strong validator from size and modification time, in quotes (RFC 9110 section 8.8.3)
   std::string cache_control;  // files in assets/ have a content hash in their name and are cached as immutable
 };
 
-// Returns the file that a request target names; "/" is index.html. Thread-safe.
+// Returns the file that a request target names; "/" is index.html. Thread-safe. Query and fragment are ignored, and
+// percent-encoding is decoded once. Looks at the disk at each call, so that a viewer built meanwhile is served; keeps
+// nothing open. If `root` does not exist, NOT_FOUND says how to build it.
 // Errors: NOT_FOUND if there is no such file or if it is outside `root`, by ".." or a symbolic link; INVALID_ARGUMENT
 // if the target is malformed.
 absl::StatusOr<StaticFile> FindStaticFile(const std::string& root, std::string_view target);
 
-// Returns the media type for a file extension; "application/octet-stream" if it is unknown.
+// Returns the media type for a file extension; "application/octet-stream" if it is unknown. Text types say UTF-8. Pure
+// function, thread-safe.
 std::string ContentTypeOf(std::string_view path);
 
 }  // namespace phrenic::service

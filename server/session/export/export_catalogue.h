@@ -9,6 +9,7 @@
 namespace phrenic::session {
 
 // Returns one row for each format of record/formats.cc, then one for each other format that meshio writes. Thread-safe.
+// The list is made at the first call and lives as long as the process.
 const std::vector<record::Format>& ExportFormats();
 
 }  // namespace phrenic::session

@@ -19,7 +19,9 @@ using ExportProgress = std::function<absl::Status(double share, double recorded_
 
 // Steps `fork` to plan.start, then for plan.seconds, on the caller's thread. Records the first state there, and then
 // one state every 1/frames_per_second, each at the first step that reaches its time, or one every steps_per_frame
-// steps. OUT_OF_RANGE tells where the motion diverged; RESOURCE_EXHAUSTED that the disk is full.
+// steps. OUT_OF_RANGE tells where the motion diverged; RESOURCE_EXHAUSTED that the disk is full. `share` counts the
+// writing from a spool as half of the work. The session of the fork is not touched. The errors of the recorder, the
+// file and `progress`. Thread-safe for different files.
 absl::StatusOr<v1::ExportSummary> ExportMotion(const ExportPlan& plan, const std::shared_ptr<const Model>& model,
                                                Fork fork, ExportFile& file, const ExportProgress& progress);
 

@@ -22,13 +22,14 @@
 
 namespace phrenic::session {
 
-// Thread-safe. limits.exports threads of its own run the exports.
+// Thread-safe. limits.exports threads of its own run the exports. The server owns one (service/server.cc). Exports step
+// copies of a session's state, while the session goes on.
 class Exports {
  public:
   using Start = ExportStart;
   using Seen = jobs::Queue<ExportJob>::Seen;
 
-  // `clock` and `store` outlive it. A null store keeps nothing.
+  // `clock` and `store` outlive it. A null store keeps nothing. Spool files are unnamed and lie in `spool_folder`.
   Exports(const Limits& limits, std::string spool_folder, const Clock& clock, store::Store* store = nullptr);
 
   // Queues the exports of an earlier server again, which make the same files. `account_of` gives the present name of
@@ -39,7 +40,8 @@ class Exports {
                std::map<std::string, absl::Status>& lost);
 
   // Plans the export, queues it, and returns once the store has it on the disk. An empty id is chosen from the
-  // session's. The errors of PlanExport and jobs::Queue::Add; at most limits.kept_exports are kept.
+  // session's. The errors of PlanExport and jobs::Queue::Add; at most limits.kept_exports are kept. RESOURCE_EXHAUSTED
+  // if no export may go for it, or if the disk is full.
   absl::StatusOr<v1::Export> Add(const v1::CreateExportRequest& request, Start start);
   // The same as the methods of jobs::Queue.
   absl::StatusOr<Seen> Wait(const std::string& id, std::int64_t seen, absl::Duration longest) const {
@@ -55,9 +57,11 @@ class Exports {
   std::optional<std::string> OwnerOf(const std::string& id) const { return queue_.OwnerOf(id); }
   absl::Status Delete(const std::string& id) { return queue_.Delete(id); }
   // Returns the file of an export that is done; it lives as long as a caller holds it. FAILED_PRECONDITION before that.
+  // The errors of jobs::Queue::Read; the message of a failed export has its problem.
   absl::StatusOr<std::shared_ptr<const record::SpoolFile>> File(const std::string& id) const;
 
  private:
+  // The errors of PlanExport, record::SpoolFile::Open and SaveExport.
   absl::StatusOr<std::shared_ptr<ExportJob>> MakeJob(const v1::CreateExportRequest& request, Start start) const;
 
   const std::string spool_folder_;

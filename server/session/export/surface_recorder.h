@@ -19,13 +19,14 @@ class SurfaceRecorder final : public record::Recorder {
 
   absl::Status Begin(const record::Recording& recording) override;
   absl::Status AddFrame(const record::RecordedFrame& frame) override;
+  // Writes the whole file to the sink at once and reports no progress. The errors of meshio::Write and the sink.
   absl::Status End(const std::function<absl::Status(double share)>& report) override;
 
  private:
   const std::string ending_;
   const record::Sink sink_;
-  std::vector<record::RecordedBody> bodies_;
-  Points positions_;  // 3 x n [m]
+  std::vector<record::RecordedBody> bodies_;  // from Begin
+  Points positions_;                          // 3 x n [m]
 };
 
 }  // namespace phrenic::session

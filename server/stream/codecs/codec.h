@@ -16,9 +16,10 @@ namespace phrenic::stream {
 
 using Floats = Eigen::Matrix3Xf;  // 3 x n [m], one column per vertex
 
-// What server and viewer know of the streamed vertices from the geometry.
+// What server and viewer know of the streamed vertices from the geometry. Both make the same one, bit for bit, since
+// codecs predict from it.
 struct RestShape {
-  Floats rest;
+  Floats rest;                      // float32, as the geometry has them
   Edges edges;                      // pairs of neighbouring vertices
   std::vector<Floats> shapes = {};  // displacement shapes of CODEC_BASIS [m]
 };
@@ -35,15 +36,17 @@ class Codec {
   virtual absl::StatusOr<Floats> Decode(std::string_view bytes) const = 0;
 };
 
+// Codecs() owns the rows; they live as long as the process.
 struct CodecRow {
   v1::Codec codec;
-  std::string_view name;
+  std::string_view name;  // in commands, such as "raw"
   std::unique_ptr<Codec> (*make)(const RestShape& shape);
 };
 
 // One row a codec, CODEC_RAW first.
 std::span<const CodecRow> Codecs();
-// Returns the codec; CODEC_RAW for CODEC_UNSPECIFIED and unknown values.
+// Returns the codec; CODEC_RAW for CODEC_UNSPECIFIED and unknown values. The codec copies what it needs of `shape`.
+// Thread-safe.
 std::unique_ptr<Codec> MakeCodec(v1::Codec codec, const RestShape& shape);
 
 }  // namespace phrenic::stream

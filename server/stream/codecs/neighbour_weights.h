@@ -24,7 +24,9 @@ inline constexpr int kUnit = 4096;
 
 // The weights evaluate a linear function of the rest position, fitted to the neighbours by regularised least squares,
 // at the vertex: w_j = 1 - d_j.c, c = (r I + sum d d^T)^-1 sum d, d_j = x_j - x, r = max |d|^2/32, divided by their
-// sum. A vertex without earlier neighbours is predicted from the previous vertex.
+// sum. A vertex without earlier neighbours is predicted from the previous vertex. Weights are equal where the fit is
+// ill-conditioned (|w| above 4 times their sum). Computed in double, with sums, products and one division in a fixed
+// order, so that all clients round alike. Thread-safe.
 NeighbourWeights MakeNeighbourWeights(const RestShape& shape);
 
 }  // namespace phrenic::stream

@@ -7,6 +7,8 @@
 namespace phrenic::stream {
 
 // x = corner + step q, 0 <= q < 2^16, corner that of the positions' bounding box. proto/README.md specifies the bytes.
+// OUT_OF_RANGE if positions lie more than 65,535 steps apart along an axis. The planes have all x first, then y and z,
+// and are compressed together.
 class PlanesCodec final : public Codec {
  public:
   explicit PlanesCodec(const RestShape& shape) : vertices_(shape.rest.cols()) {}

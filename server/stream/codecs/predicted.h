@@ -7,7 +7,8 @@
 
 namespace phrenic::stream {
 
-// x = rest + step d, d integers. proto/README.md specifies the bytes.
+// x = rest + step d, d integers. proto/README.md specifies the bytes. OUT_OF_RANGE for a displacement beyond kFurthest
+// steps. The bytes are the step as float64 [m] and the residuals (AppendResiduals).
 class PredictedCodec final : public Codec {
  public:
   explicit PredictedCodec(const RestShape& shape);

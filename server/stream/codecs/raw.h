@@ -6,7 +6,7 @@
 
 namespace phrenic::stream {
 
-// x, y, z per vertex.
+// x, y, z per vertex. Little-endian, 12 bytes per vertex. Encode never fails and ignores `max_error`.
 class RawCodec final : public Codec {
  public:
   explicit RawCodec(const RestShape& shape) : vertices_(shape.rest.cols()) {}

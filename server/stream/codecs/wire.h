@@ -27,6 +27,7 @@ inline void AppendIndices(const Eigen::Ref<const Eigen::MatrixXi>& indices, std:
   bytes.append(reinterpret_cast<const char*>(indices.data()), sizeof(int) * indices.size());
 }
 
+// Appends the bytes of a number, of 4 or 8 bytes in the formats here.
 template <class Number>
 void Append(Number value, std::string& bytes) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
