@@ -263,16 +263,19 @@ void Table::Drop(const std::string& id) {
 }
 
 void Table::Tend() {
-  std::vector<std::shared_ptr<Session>> dropped;
+  std::vector<std::shared_ptr<Session>> dropped, tended;
   {
     absl::MutexLock lock(&mutex_);
     dropped.swap(dropped_);
+    for (const auto& [id, session] : sessions_) {
+      if (session != nullptr) tended.push_back(session);
+    }
   }
   const absl::Time now = clock_.Now();
   const auto over = [now](const Session& session, double minutes) {
     return minutes > 0 && now - session.attended() >= absl::Minutes(minutes);
   };
-  for (const auto& session : List(kLargestPage, "").sessions) {
+  for (const auto& session : tended) {
     const v1::Session status = session->status();
     if (status.viewers() > 0) session->NoteAttention();
     session->AnnounceNotSaved();

@@ -4,6 +4,7 @@
 #include <grpcpp/create_channel.h>
 
 #include <cstdio>
+#include <fstream>
 
 #include "phrenic/v1/session.grpc.pb.h"
 #include "server/service/server.h"
@@ -49,9 +50,9 @@ class Tls : public testing::Test {
     return grpc::SslCredentials(options);
   }
   // Returns curl's HTTP status from the web port; "000" if the connection fails.
-  std::string Curl(const std::string& words) const {
-    const std::string command = "curl -s -m 10 -o /dev/null -w '%{http_code}' " + words +
-                                " https://127.0.0.1:" + std::to_string(server_->web_port()) + "/healthz 2>/dev/null";
+  std::string Curl(const std::string& words, const std::string& scheme = "https") const {
+    const std::string command = "curl -s -m 10 -o /dev/null -w '%{http_code}' " + words + " " + scheme +
+                                "://127.0.0.1:" + std::to_string(server_->web_port()) + "/healthz 2>/dev/null";
     FILE* pipe = popen(command.c_str(), "r");
     char code[16] = "";
     EXPECT_NE(std::fgets(code, sizeof code, pipe), nullptr);
@@ -107,6 +108,14 @@ TEST_F(Tls, RenewedCertificatesAreUsedWithoutARestart) {
   EXPECT_EQ(code, "200");
   EXPECT_EQ(call, grpc::OK);
   EXPECT_EQ(CallWith(Trusting("good")).error_code(), grpc::UNAVAILABLE);
+}
+
+// The files can go bad between the start and the first connection.
+TEST_F(Tls, WithoutUsableCertificatesTheWebPortAnswersNothing) {
+  Start();
+  std::ofstream(options_.tls.certificate) << "no certificate";
+  EXPECT_EQ(Curl("--insecure"), "000");
+  EXPECT_EQ(Curl("", "http"), "000") << "it was served in the clear";
 }
 
 TEST_F(Tls, BadFilesAreNamedWithTheirFlag) {

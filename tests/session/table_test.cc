@@ -254,6 +254,18 @@ TEST_F(TendedTable, ASessionWithoutViewersOrCallsIsPausedAndThenDeleted) {
   EXPECT_TRUE(table_.Find("asked").ok());
 }
 
+TEST_F(TendedTable, EverySessionIsTendedHoweverManyThereAre) {
+  for (int i = 0; i < 1010; ++i) {  // a page of List has at most 1,000
+    v1::CreateSessionRequest request;
+    request.set_session_id("s" + std::to_string(i));
+    request.mutable_source()->set_name("triangle");
+    ASSERT_TRUE(table_.Create(request).ok());
+  }
+  clock_.Advance(absl::Minutes(31));
+  table_.Tend();
+  EXPECT_TRUE(table_.List(10, "").sessions.empty());
+}
+
 TEST_F(TendedTable, AWatchedSessionContinues) {
   const auto watched = Play("watched");
   const auto viewer = watched->publisher().Join({}, [] {});

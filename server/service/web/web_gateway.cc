@@ -73,7 +73,9 @@ void WebGateway::OnAccept(boost::system::error_code error, tcp::socket socket) {
     boost::system::error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     EnableKeepalive(socket);
-    const auto connection = std::make_shared<WebConnection>(std::move(socket), tls_.Current(), shared_);
+    const auto tls = tls_.Current();
+    if (!tls.ok()) return AcceptNext();  // closes the connection: nothing is served without the TLS that was asked for
+    const auto connection = std::make_shared<WebConnection>(std::move(socket), *tls, shared_);
     if (Admit(connection)) {
       connection->Run();
     } else {

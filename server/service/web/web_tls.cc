@@ -35,7 +35,7 @@ std::filesystem::file_time_type WebTls::LastModified() const {
   return newest;
 }
 
-std::shared_ptr<ssl::context> WebTls::Current() {
+absl::StatusOr<std::shared_ptr<ssl::context>> WebTls::Current() {
   if (!files_.used()) return nullptr;
   const auto now = std::chrono::steady_clock::now();
   if (context_ != nullptr && now - last_checked_ < kReloadInterval) return context_;
@@ -46,6 +46,7 @@ std::shared_ptr<ssl::context> WebTls::Current() {
     context_ = std::move(reloaded);
     loaded_version_ = modified;
   }
+  if (context_ == nullptr) return absl::UnavailableError("the certificate files cannot be used");
   return context_;
 }
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "absl/status/statusor.h"
 #include "server/service/net/tls.h"
 
 namespace phrenic::service {
@@ -23,9 +24,9 @@ class WebTls {
   explicit WebTls(TlsFiles files) : files_(std::move(files)) {}
 
   // Returns the context for a new connection, null if TLS is not used. Checks the files for changes at most every 10 s;
-  // keeps the previous context if the new files are not valid. Blocks on the disk when it checks. Also null, without an
-  // error, while no valid files were read.
-  std::shared_ptr<boost::asio::ssl::context> Current();
+  // keeps the previous context if the new files are not valid. Blocks on the disk when it checks. UNAVAILABLE if no
+  // valid files were read yet: the connection must then not be served.
+  absl::StatusOr<std::shared_ptr<boost::asio::ssl::context>> Current();
 
  private:
   // Returns the newest modification time of the files; a missing file does not count.
