@@ -15,15 +15,17 @@
 namespace phrenic {
 
 // Returns the model, or the error of the parser or the compile step.
-inline absl::StatusOr<std::shared_ptr<const Model>> TryCompileText(const std::string& text) {
+inline absl::StatusOr<std::shared_ptr<const Model>> TryCompileText(const std::string& text,
+                                                                   const CompileOptions& options = {}) {
   absl::StatusOr<v1::Scene> scene = schema::ParseScene("test", text);
   if (!scene.ok()) return scene.status();
-  return Compile(*scene, [](const v1::Body&) { return absl::NotFoundError("tests read no files"); });
+  return Compile(
+      *scene, [](const v1::Body&) { return absl::NotFoundError("tests read no files"); }, options);
 }
 
 // Returns the model; fails the test and returns null if there is an error.
-inline std::shared_ptr<const Model> CompileText(const std::string& text) {
-  auto model = TryCompileText(text);
+inline std::shared_ptr<const Model> CompileText(const std::string& text, const CompileOptions& options = {}) {
+  auto model = TryCompileText(text, options);
   EXPECT_TRUE(model.ok()) << model.status();
   return model.ok() ? *model : nullptr;
 }

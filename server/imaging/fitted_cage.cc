@@ -50,8 +50,8 @@ Eigen::VectorXd DistancesOfBone(const LabelVolume& volume, const std::vector<Par
   const double step = volume.Spacing().minCoeff() / 3;
   Eigen::VectorXd distances = Eigen::VectorXd::Constant(grid.nodes(), HUGE_VAL);
   for (int node = 0; node < grid.nodes(); ++node) {
-    const double z = bottom + kRowHeight * (node / grid.columns),
-                 azimuth = kFullTurn * (node % grid.columns) / kColumns;
+    const int row = node / grid.columns;
+    const double z = bottom + kRowHeight * row, azimuth = kFullTurn * (node % grid.columns) / kColumns;
     const Eigen::Vector2d axis = frame.Axis(z);
     const Ray ray{{axis.x(), axis.y(), z}, {std::sin(azimuth), -std::cos(azimuth), 0}};
     for (double depth = step; depth < kFurthestBone; depth += step) {

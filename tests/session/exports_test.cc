@@ -10,6 +10,7 @@
 #include "server/mechanics/state.h"
 #include "server/mechanics/step/step.h"
 #include "server/session/meshes.h"
+#include "server/session/scene_hash.h"
 #include "server/session/uploads.h"
 #include "tests/compile_text.h"
 #include "tests/fake_clock.h"
@@ -44,7 +45,7 @@ class ExportsTest : public testing::Test {
   }
 
   FakeClock clock_;
-  std::shared_ptr<const Model> model_ = CompileText(kTriangle);
+  std::shared_ptr<const Model> model_ = CompileText(kTriangle, {.hash = &SceneHash});
   v1::CreateExportRequest request_;
   Exports exports_{{.exports = 1, .kept_exports = 3, .export_minutes = 60}, testing::TempDir(), clock_};
 };

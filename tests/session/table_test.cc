@@ -235,7 +235,7 @@ class TendedTable : public FolderTest {
 
   FakeClock clock_;
   Models models_{Catalogue(), "", 4};
-  Table table_{models_, clock_, {.pause_minutes = 10, .delete_minutes = 30}};
+  Table table_{models_, clock_, {.sessions = 2000, .pause_minutes = 10, .delete_minutes = 30}};
 };
 
 TEST_F(TendedTable, ASessionWithoutViewersOrCallsIsPausedAndThenDeleted) {
