@@ -53,7 +53,7 @@ CommandFunction SetUpPause(CLI::App& command);
 CommandFunction SetUpReset(CLI::App& command);
 CommandFunction SetUpDelete(CLI::App& command);
 // control.cc: ControlService. `take` keeps the token of control in the user's files (files/tokens.h); the others send
-// it and fail if there is none.
+// it and fail if no token is kept.
 CommandFunction SetUpControlShow(CLI::App& command);
 CommandFunction SetUpControlTake(CLI::App& command);
 CommandFunction SetUpControlHand(CLI::App& command);

@@ -89,18 +89,20 @@ void SetTop(const Landmarks& marks, CageFrame& frame) {
 
 // FAILED_PRECONDITION if the landmarks are not those of a person, lying or standing, in a volume of LPS millimetres.
 absl::Status CheckProportions(const CageFrame& frame, const Eigen::AlignedBox3d& cage) {
-  constexpr double kNarrowest = 60, kWidest = 800;  // cage [mm]
-  constexpr double kLowest = 5, kHighest = 100;     // vertebra [mm]
+  constexpr double kNarrowest = 60, kWidest = 800, kTallest = 900;  // cage [mm]
+  constexpr double kLowest = 5, kHighest = 100;                     // vertebra [mm]
   const double depth = frame.spine_front - cage.min().y();
   const bool human = frame.width >= kNarrowest && frame.width <= kWidest && frame.vertebra_height >= kLowest &&
                      frame.vertebra_height <= kHighest && depth > 0 && depth < kWidest && frame.centre.allFinite() &&
                      frame.lumbar[0] > frame.lumbar[1] && frame.lumbar[1] > frame.lumbar[2] &&
+                     frame.top > frame.lumbar[2] && frame.top - frame.lumbar[2] < kTallest &&
                      std::abs(frame.sternum_end - frame.lumbar[0]) < kWidest;
   if (human) return absl::OkStatus();
   return absl::FailedPreconditionError(absl::StrFormat(
-      "these are not the proportions of a thorax: the cage is %.0f mm wide, its front is %.0f mm before the spine, "
-      "vertebrae are %.0f mm apart from the top; check the label map, the volume's spacing and which way is up",
-      frame.width, depth, frame.vertebra_height));
+      "these are not the proportions of a thorax: the cage is %.0f mm wide, its front is %.0f mm before the spine, its "
+      "top %.0f mm above L3, vertebrae are %.0f mm apart from the top; check the label map, the volume's spacing and "
+      "which way is up",
+      frame.width, depth, frame.top - frame.lumbar[2], frame.vertebra_height));
 }
 
 }  // namespace

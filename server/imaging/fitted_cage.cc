@@ -13,7 +13,8 @@ namespace {
 constexpr int kColumns = 144;
 constexpr double kRowHeight = 4;                    // [mm]
 constexpr double kOffCage = 3.5;                    // of the wall from a bone's inner face [mm]
-constexpr double kFurthestBone = 260;               // bone [mm]
+constexpr double kFurthestBone = 260;               // of rays from the axis [mm]
+constexpr double kShortestStep = 0.1;               // along a ray, however fine the voxels are [mm]
 constexpr double kNarrowest = 8;                    // [mm]
 constexpr double kStiffness = 1, kUpright = 0.02;   // bending and tension, relative to a weight of 1 a ray
 constexpr double kNearer = 10;                      // weight of a bone that is nearer to the axis than the wall
@@ -42,12 +43,12 @@ std::vector<std::uint8_t> FindBone(const LabelVolume& volume, const std::vector<
   return bone;
 }
 
-// Returns the distance of the first voxel of bone on each ray of the grid; infinity if there is none.
+// Returns the distance of the first voxel of bone on each ray of the grid; infinity if a ray meets no bone.
 Eigen::VectorXd DistancesOfBone(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,
                                 const PlateGrid& grid, double bottom) {
   const std::vector<std::uint8_t> bone = FindBone(volume, parts);
   const Eigen::Affine3d to_voxel = volume.to_patient.inverse();
-  const double step = volume.Spacing().minCoeff() / 3;
+  const double step = std::max(volume.Spacing().minCoeff() / 3, kShortestStep);
   Eigen::VectorXd distances = Eigen::VectorXd::Constant(grid.nodes(), HUGE_VAL);
   for (int node = 0; node < grid.nodes(); ++node) {
     const int row = node / grid.columns;

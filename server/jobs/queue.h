@@ -104,7 +104,7 @@ class Queue {
   // Returns the jobs whose owner is `visible`, oldest first; null: all.
   std::vector<Message> List(const std::function<bool(const std::string& owner)>& visible = nullptr) const
       ABSL_LOCKS_EXCLUDED(mutex_);
-  // Cancels the job if it runs, and removes it here and from the store. NOT_FOUND if there is none.
+  // Cancels the job if it runs, and removes it here and from the store. NOT_FOUND if no job has this id.
   absl::Status Delete(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);
 
   // What the store keeps of the jobs.
@@ -153,7 +153,7 @@ class Queue {
   void RemoveExpired() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Returns when the next lifetime is over; the infinite future if no job has ended.
   absl::Time NextExpiry() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // Returns the job with this id; null if there is none.
+  // Returns the job with this id; null if no job has it.
   std::shared_ptr<Entry> Find(const std::string& id) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Returns the oldest queued job of the owner whose turn it is; null if none may run.
   std::shared_ptr<Entry> NextQueued() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);

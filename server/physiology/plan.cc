@@ -110,6 +110,11 @@ bool IsChosen(const Row& row, std::span<const std::string> presets) {
 }
 
 absl::StatusOr<std::vector<PlannedBreath>> PlanBreaths(const Subject& subject, std::span<const std::string> presets) {
+  const size_t breaths = presets.empty() ? static_cast<size_t>(subject.model.scene.presets_size()) : presets.size();
+  if (breaths > kMostPresets) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("presets: these are ", breaths, ", and one table takes at most ", kMostPresets, ": name fewer"));
+  }
   Plan plan(subject);
   for (const std::string& preset : presets) {
     const auto known = FindPreset(subject.model.scene, preset);

@@ -24,8 +24,11 @@ std::string NameOf(Needs needs);
 // True if the row is of one of these presets; of any, if there are none.
 bool IsChosen(const Row& row, std::span<const std::string> presets);
 
+inline constexpr size_t kMostPresets = 256;  // in one table
+
 // Returns each preset of the scene, or those chosen, the changed breaths that a row of theirs speaks of, and what they
-// are compared with; each once. INVALID_ARGUMENT, with the scene's presets, if there is no preset of that name.
+// are compared with; each once. INVALID_ARGUMENT, with the scene's presets, if it has no preset of that name, or if
+// these are more than kMostPresets.
 absl::StatusOr<std::vector<PlannedBreath>> PlanBreaths(const Subject& subject, std::span<const std::string> presets);
 
 }  // namespace phrenic::physiology

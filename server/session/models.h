@@ -38,7 +38,7 @@ class Models {
  public:
   // Keeps the `capacity` models that were used last, as long as they have limits.elements together. `uploads` outlives
   // it; null: scenes cannot name uploaded files. The latest model is kept in any case, and a `capacity` below 1 counts
-  // as 1. Surface files lie below `data_dir`; empty: there are none.
+  // as 1. Surface files lie below `data_dir`; empty: scenes read no files.
   Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Uploads* uploads = nullptr,
          const Limits& limits = {});
 

@@ -85,7 +85,7 @@ class Table {
   Page List(int page_size, const std::string& after,
             const std::function<bool(const Session& session)>& visible = nullptr) const ABSL_LOCKS_EXCLUDED(mutex_);
   // Deletes the session if the token's bearer may (Session::CheckControl), and ends its viewers with NOT_FOUND. Also
-  // deletes a session that could not be restored, by its saved control. NOT_FOUND if there is none.
+  // deletes a session that could not be restored, by its saved control. NOT_FOUND if no session has this id.
   absl::Status Delete(const std::string& id, std::string_view token = {}) ABSL_LOCKS_EXCLUDED(mutex_);
   // Deletes the session without regard to control. For administrators and Tend.
   absl::Status DeleteAnyway(const std::string& id) ABSL_LOCKS_EXCLUDED(mutex_);

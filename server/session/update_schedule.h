@@ -22,7 +22,7 @@ class UpdateSchedule {
   // Returns RESOURCE_EXHAUSTED if kMostWaiting changes wait already. Requires: `tick` is after the session's present
   // tick.
   absl::Status Add(std::int64_t tick, const v1::Parameters& changes);
-  // Removes and returns the first changes whose tick is at most `tick`; nullopt if there are none. Call it until it
+  // Removes and returns the first changes whose tick is at most `tick`; nullopt if all are later. Call it until it
   // returns nullopt.
   std::optional<v1::Parameters> TakeDue(std::int64_t tick);
   void Clear() { waiting_.clear(); }

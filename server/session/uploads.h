@@ -89,12 +89,12 @@ class Uploads {
   // INVALID_ARGUMENT for a name that is too long or has an unknown ending, and for an empty file; RESOURCE_EXHAUSTED
   // for a file above limits.upload_bytes.
   absl::Status CheckFile(const std::string& name, std::int64_t size) const;
-  // Parses a file whose upload another client, or an earlier call, has finished. NOT_FOUND if there is none.
+  // Parses a file whose upload another client, or an earlier call, has finished. NOT_FOUND if no such upload exists.
   absl::StatusOr<Finished> FinishedBefore(const Requester& by, const std::string& id, double unit_mm) const
       ABSL_LOCKS_EXCLUDED(mutex_);
   // Returns NOT_FOUND.
   absl::Status NoUpload(const std::string& id) const;
-  // Returns the requester's file, or for an administrator another owner's; the end if there is none.
+  // Returns the requester's file, or for an administrator another owner's; the end if neither exists.
   Files::iterator FindKept(const Requester& by, std::string_view sha256) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Compares ids in constant time; the end if the owner has no such upload.
   Files::iterator FindPending(const Requester& by, const std::string& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);

@@ -70,7 +70,7 @@ class Viewer {
   void End(absl::Status reason) ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Returns the next message: status updates and the camera before a frame, and a frame only if the window of
-  // unacknowledged frames allows it. Null if there is none. A frame that is taken counts as sent at `now`.
+  // unacknowledged frames allows it. Null if no frame may be sent. A frame that is taken counts as sent at `now`.
   Bytes Take(absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
   // Records an acknowledgement and returns the resulting flow control. `basis_epoch` is that of the viewer's basis. All
   // frames up to `sequence` are acknowledged. The response has frames a second, bound [mm] and window; Publisher adds

@@ -18,7 +18,7 @@ TEST(Token, EqualsOnlyItself) {
   const std::string token = NewToken();
   EXPECT_TRUE(SameToken(token, std::string(token)));
   EXPECT_FALSE(SameToken(token, token.substr(1)));
-  EXPECT_FALSE(SameToken("", "")) << "no token is nobody's";
+  EXPECT_FALSE(SameToken("", "")) << "an empty token matches nobody";
   for (std::size_t i = 0; i < token.size(); ++i) {
     std::string other = token;
     other[i] = other[i] == '0' ? '1' : '0';

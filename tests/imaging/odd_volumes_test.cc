@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "absl/strings/match.h"
@@ -72,6 +73,24 @@ v1::LabelMap OddVolumes::map_;
 v1::Scene OddVolumes::pattern_;
 LabelVolume OddVolumes::whole_;
 std::map<Label, v1::LabelMeaning> OddVolumes::meanings_;
+
+// The size of what is fitted follows the height of the cage.
+TEST_F(OddVolumes, AThoraxAsTallAsAHouseIsRefused) {
+  LabelVolume tall = whole_;
+  const auto first = std::find_if(meanings_.begin(), meanings_.end(), [](const auto& each) {
+    return Is(each.second, v1::STRUCTURE_VERTEBRA) && each.second.anatomy().number() == 1;
+  });
+  const auto last = std::find(whole_.labels.rbegin(), whole_.labels.rend(), first->first);
+  ASSERT_NE(last, whole_.labels.rend());
+  const auto slice = static_cast<std::size_t>(tall.size.x()) * tall.size.y();
+  const auto top = static_cast<std::size_t>(whole_.labels.rend() - last) - 1;
+  tall.size.z() += 1000;
+  tall.labels.resize(slice * tall.size.z(), 0);
+  for (std::size_t at = top; at < tall.labels.size(); at += slice) tall.labels[at] = first->first;
+  const absl::Status status = Make(tall);
+  ExpectRemedy(status, "tall");
+  EXPECT_TRUE(absl::StrContains(status.message(), "proportions")) << status;
+}
 
 TEST_F(OddVolumes, WithoutAStructureGiveAPatientOrARemedy) {
   const std::pair<const char*, Keep> kinds[] = {

@@ -232,7 +232,7 @@ TEST(LawsOfABreath, EveryIntegratorBeginsWithAFiniteStep) {
   }
 }
 
-// Nothing that a person can set makes numbers that are none: a run stays finite, or stops and says why.
+// Whatever a person sets, a run stays finite, or stops and says why.
 TEST(LawsOfABreath, ExtremeCasesStayFiniteOrStopHonestly) {
   const auto model = CompileThorax(8, false);
   struct Extreme {

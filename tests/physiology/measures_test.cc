@@ -100,5 +100,12 @@ TEST_F(Measures, AnUnknownPresetIsRefusedWithTheKnownOnes) {
   EXPECT_NE(std::string(table.status().message()).find("quiet"), std::string::npos);
 }
 
+TEST_F(Measures, MorePresetsThanATableTakesAreRefusedAtOnce) {
+  const std::vector<std::string> many(100'000, "quiet");
+  const auto table = physiology::CheckPhysiology(*model_, many, [](double) { return false; });
+  EXPECT_EQ(table.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_NE(std::string(table.status().message()).find("at most 256"), std::string::npos) << table.status();
+}
+
 }  // namespace
 }  // namespace phrenic

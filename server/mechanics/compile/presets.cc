@@ -26,11 +26,11 @@ void CompletePresets(v1::Scene& scene) {
 
 absl::StatusOr<v1::Parameters> FindPreset(const v1::Scene& scene, const std::string& name) {
   if (name.empty()) return v1::Parameters();
-  std::vector<std::string> names;
   for (const v1::Preset& preset : scene.presets()) {
     if (preset.name() == name) return preset.parameters();
-    names.push_back(preset.name());
   }
+  std::vector<std::string> names;
+  for (const v1::Preset& preset : scene.presets()) names.push_back(preset.name());
   return absl::InvalidArgumentError(
       absl::StrCat("preset: scene \"", scene.name(), "\" has no preset \"", name, "\"", schema::ThereAre(name, names)));
 }

@@ -34,7 +34,7 @@ class CallLimits {
   CallLimits(int max_calls, std::chrono::milliseconds request_time);
 
   // Calls and streams in flight: of callers with an account or a link, and of the others. IncomingCall takes a place
-  // when it has the headers, and holds it until the call is done. RESOURCE_EXHAUSTED if there is none. Callers of the
+  // when it has the headers, and holds it until the call is done. RESOURCE_EXHAUSTED if all are held. Callers of the
   // second kind have 1/16 as many places, each of them and together.
   FairShare& in_flight(bool known) { return known ? in_flight_ : unknown_; }
   // Requests that are being read; conversations whose client is to send a further one. 24 places of each, 4 of one

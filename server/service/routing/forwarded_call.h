@@ -68,7 +68,7 @@ class ForwardedCall final : public IncomingCall {
   void OnFanOutDone(std::size_t index, const grpc::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
 
   SessionRouter& router_;
-  const std::string method_, peer_;         // peer_ is the IP address; "unknown" if there is none
+  const std::string method_, peer_;         // peer_ is the IP address; "unknown" where the transport has no address
   const SessionRouter::Metadata metadata_;  // of the client, as far as they are forwarded
   grpc::ByteBuffer outgoing_;               // of the write in progress
   SessionRouter::Route route_;              // constant after FindRoute
