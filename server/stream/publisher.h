@@ -55,8 +55,8 @@ class Publisher {
   // has no effect.
   void Close(const absl::Status& reason) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // Records frames as received by the viewer with the request's watch_id. NOT_FOUND if no viewer has it. The response has
-  // the viewer's flow control and, for CODEC_BASIS, the epoch of the newest basis.
+  // Records frames as received by the viewer with the request's watch_id. NOT_FOUND if no viewer has it. The response
+  // has the viewer's flow control and, for CODEC_BASIS, the epoch of the newest basis.
   absl::StatusOr<v1::AckFramesResponse> Acknowledge(const v1::AckFramesRequest& request) ABSL_LOCKS_EXCLUDED(mutex_);
 
   int viewers() const ABSL_LOCKS_EXCLUDED(mutex_);
