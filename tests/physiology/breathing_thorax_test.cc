@@ -178,6 +178,15 @@ TEST_F(BreathingThorax, AParalysedDomeIsDrawnUp) {
   EXPECT_LT(*std::min_element(displaced.begin(), displaced.end()), -0.02 * kLitre);
 }
 
+TEST_F(BreathingThorax, TrappedAirFillsTheLungsAndLeavesTheDomesLessToMove) {
+  const Curves with = Breathe("copd"), without = Breathe("copd", [](auto&p) { p.set_trapped_air(0); });
+  std::printf("COPD with and without trapped air: least volume %.2f, %.2f l; right dome %.1f, %.1f mm\n",
+              with.Least("lung volume", 3.5) / kLitre, without.Least("lung volume", 3.5) / kLitre,
+              1e3 * with.Range("right dome", 3.5), 1e3 * without.Range("right dome", 3.5));
+  EXPECT_GT(with.Least("lung volume", 3.5), without.Least("lung volume", 3.5) + 0.1 * kLitre);
+  EXPECT_LT(with.Range("right dome", 3.5), without.Range("right dome", 3.5));
+}
+
 TEST_F(BreathingThorax, UprightLungsRestFuller) {
   v1::Parameters parameters = With("breath-hold");
   const double supine = Run(parameters, 4).of.at("lung volume").back();
