@@ -145,15 +145,17 @@ Points LungTissue::SolveWith(const LayeredCholesky& factors, const ConstPoints& 
   return nodes.reshaped(3, grid_.nodes().cols());
 }
 
-Points LungTissue::SolveVectors(const ConstPoints& displacement) const { return SolveWith(*factors_, displacement); }
+Points LungTissue::Solve(const Eigen::VectorXd& g) const { return SolveVectors(normals_ * g.asDiagonal()); }
 
-Points LungTissue::Solve(const Eigen::VectorXd& g) const {
-  const Eigen::VectorXd held = g.array().isNaN().select(0, g);
-  const Points displacement = normals_ * held.asDiagonal();
-  if (!g.hasNaN()) return SolveWith(*factors_, displacement);
+Points LungTissue::SolveVectors(const ConstPoints& displacement) const {
+  if (!displacement.hasNaN()) return SolveWith(*factors_, displacement);
   std::vector<bool> free;
-  for (const double value : g) free.push_back(std::isnan(value));
-  return SolveWith(*Factorise(free, {}), displacement);  // positive definite as the first one was
+  Points held = displacement;
+  for (auto at : held.colwise()) {
+    free.push_back(at.hasNaN());
+    if (free.back()) at.setZero();
+  }
+  return SolveWith(*Factorise(free, {}), held);  // positive definite as the first one was
 }
 
 double LungTissue::Energy(const Points& nodes, const ConstPoints& displacement) const {
