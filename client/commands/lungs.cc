@@ -66,7 +66,8 @@ absl::StatusOr<std::shared_ptr<const Model>> CompileLungs(const Context& context
   if (!source.ok()) return source.status();
   std::vector<std::string> folders = {Installed("scenes", PHRENIC_SCENES_DIR)};
   if (!options.data_dir.empty()) folders.push_back(options.data_dir + "/scenes");
-  session::Models models(session::SceneCatalogue(folders), options.data_dir, 1);
+  session::Models models(session::SceneCatalogue(folders), options.data_dir, 1, nullptr, {},
+                         session::MeshCache(session::DefaultCacheFolder()));
   const Progress compiling("compiling " + options.scene.scene);
   return models.Get(*source, {.cancelled = [&context] { return context.interruption->happened(); }});
 }
