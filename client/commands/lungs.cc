@@ -72,8 +72,8 @@ absl::StatusOr<std::shared_ptr<const Model>> CompileLungs(const Context& context
   return models.Get(*source, {.cancelled = [&context] { return context.interruption->happened(); }});
 }
 
-absl::StatusOr<v1::Parameters> ParametersOf(const Model& model, const std::string& preset,
-                                            const v1::Parameters& settings) {
+absl::StatusOr<v1::Parameters> LungParameters(const Model& model, const std::string& preset,
+                                              const v1::Parameters& settings) {
   const absl::StatusOr<v1::Parameters> found = FindPreset(model.scene, preset);
   if (!found.ok()) return found.status();
   v1::Parameters parameters = model.parameters;
@@ -132,7 +132,7 @@ absl::StatusOr<std::vector<LungsOfBreath>> ReadBreaths(const Context& context, c
   std::vector<LungsOfBreath> breaths;
   const auto presets = options.presets.empty() ? std::vector<std::string>{""} : options.presets;
   for (const std::string& preset : presets) {
-    const auto parameters = ParametersOf(**model, preset, *settings);
+    const auto parameters = LungParameters(**model, preset, *settings);
     if (!parameters.ok()) return parameters.status();
     const auto breath = Breathe(context, **subject, preset, *parameters);
     if (!breath.ok()) return breath.status();

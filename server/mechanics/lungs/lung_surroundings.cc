@@ -9,21 +9,21 @@
 namespace phrenic {
 namespace {
 
-constexpr double kReach = 0.02;     // between a lung and what touches it at rest [m]
-constexpr double kThrough = 0.006;  // depth to which a lung may reach through it [m]
-constexpr double kFacing = 0.64;    // least cosine between the normals of both
-constexpr double kInwards = 0.3;    // least part of the normal towards the midline where the mediastinum touches
+constexpr double kContactReach = 0.02;  // between a lung and what touches it at rest [m]
+constexpr double kThrough = 0.006;      // depth to which a lung may reach through it [m]
+constexpr double kLeastCosine = 0.64;   // least cosine between the normals of both
+constexpr double kInwards = 0.3;        // least part of the normal towards the midline where the mediastinum touches
 
 struct Surface {
   explicit Surface(const Mesh& of) : mesh(of), tree(of.vertices, of.triangles) { tree.Fit(mesh.vertices, boxes); }
 
   // Returns the nearest point if the boundary point faces it.
   SurfacePoint Facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {
-    const SurfacePoint near = tree.Nearest(mesh.vertices, boxes, point, kReach);
+    const SurfacePoint near = tree.Nearest(mesh.vertices, boxes, point, kContactReach);
     if (near.triangle < 0) return near;
     const Eigen::Matrix3d x = mesh.vertices(Eigen::all, tree.triangle(near.triangle));
     const Eigen::Vector3d across = (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).stableNormalized();
-    const bool aligned = std::abs(across.dot(normal)) > kFacing;
+    const bool aligned = std::abs(across.dot(normal)) > kLeastCosine;
     const bool ahead = near.offset.dot(normal) > 0 || near.squared < kThrough * kThrough;
     return aligned && ahead ? near : SurfacePoint();
   }

@@ -12,8 +12,8 @@
 namespace phrenic {
 namespace {
 
-constexpr double kOutside = 1e-3;         // stiffness of what is outside the lung, relative to its tissue
-constexpr double kRegularisation = 1e-9;  // of the mean of the diagonal
+constexpr double kOutsideStiffness = 1e-3;  // stiffness of what is outside the lung, relative to its tissue
+constexpr double kRegularisation = 1e-9;    // of the mean of the diagonal
 
 using Entries = std::vector<Eigen::Triplet<double>>;
 
@@ -110,7 +110,8 @@ Eigen::Matrix3d LungTissue::SpringOf(Eigen::Index point) const {
 LungTissue::Matrix LungTissue::Stiffness(const std::vector<bool>& free) const {
   const BrickElement element(elasticity_.edge, elasticity_.poisson);
   std::vector<BrickMatrix> bricks;
-  for (const BrickFractions& fractions : grid_.fractions()) bricks.push_back(element.Stiffness(fractions, kOutside));
+  for (const BrickFractions& fractions : grid_.fractions())
+    bricks.push_back(element.Stiffness(fractions, kOutsideStiffness));
   for (size_t p = 0; p < places_.size(); ++p) {
     if (!free[p]) AddSpring(places_[p].local, SpringOf(static_cast<Eigen::Index>(p)), bricks[places_[p].brick]);
   }
