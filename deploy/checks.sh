@@ -234,7 +234,7 @@ check_build() {
 }
 
 stage_build() {
-  check check_build phrenicd phrenic package_words release_tests
+  check check_build phrenicd phrenic package_words python_package release_tests
 }
 
 # The laws: tests of ctest whose names begin so.
