@@ -30,20 +30,21 @@ class JobsTest(SessionTest):
         study = self.session().study.error(seconds=0.2, levels=2, integrators=["velocity_verlet", "bdf2"])
         self.assertEqual({row["integrator"] for row in study.rows}, {"velocity_verlet", "bdf2"})
         self.assertTrue((study.rows["error_rms_mm"][study.rows["verdict"] == "ok"] > 0).all())
-        self.assertIn("<html", study.page)
+        if phrenic.default_server().about.viewer_is_built:
+            self.assertIn("<html", study.page)
         with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "did you mean levels"):
             self.session().study.error(level=2)
 
     def test_bodies_of_two_sessions_are_compared(self):
         session = self.session()
         with session.fork() as other:
-            self.assertEqual(session.compare(other)["hd_max"], 0)
+            self.assertLess(session.compare(other)["hd_max"], 1e-9)
             other.step(200, read=())
             moved = np.linalg.norm(
                 other.frame()["cube"].positions.astype(float) - session.frame()["cube"].positions, axis=1
             ).max()
             distance = session.compare(other)["hd_max"]
-            self.assertGreater(distance, 0)
+            self.assertGreater(distance, 1)
             self.assertLessEqual(distance, 1000 * moved + 1e-6)
             with tempfile.TemporaryDirectory() as folder:
                 path = Path(folder, "cube.msh")

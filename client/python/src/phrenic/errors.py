@@ -1,11 +1,11 @@
 """Errors of calls to the server: one class a status code, each with a remedy.
 
->>> error = make_error("NOT_FOUND", 'session_id: there is no session "x"')
->>> isinstance(error, LookupError), error.code
-(True, 'NOT_FOUND')
+>>> error = make_error("UNAUTHENTICATED", "this server has accounts")
+>>> isinstance(error, PermissionError), error.code
+(True, 'UNAUTHENTICATED')
 >>> print(error)
-session_id: there is no session "x"
-  list what there is: phrenic.connect(...).sessions() and .scenes()
+this server has accounts
+  pass phrenic.connect(..., token=TOKEN) or set PHRENIC_TOKEN
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ import grpc
 
 
 class Error(Exception):
-    """A call failed. `message` is the server's text, which names the field; `remedy` says what to do, or is empty."""
+    """A call failed. `message` is the server's text, which names the field, and often what to do; `remedy` says what to
+    do where the server cannot, else it is empty."""
 
     code = "UNKNOWN"
     remedy = ""
@@ -56,7 +57,6 @@ class NotFound(Error, LookupError):
     """There is no such session, scene, export or file; the message lists the existing ones."""
 
     code = "NOT_FOUND"
-    remedy = "list what there is: phrenic.connect(...).sessions() and .scenes()"
 
 
 class AlreadyExists(Error):
@@ -95,10 +95,9 @@ class Aborted(Error):
 
 
 class OutOfRange(Error):
-    """The session diverged during the call; the message says when, where and why."""
+    """The session diverged during the call; the message says when, where and why, and which time step to set."""
 
     code = "OUT_OF_RANGE"
-    remedy = "reset(), then set a smaller time_step (describe() has the largest stable one) or an implicit integrator"
 
 
 class Unimplemented(Error, NotImplementedError):

@@ -11,7 +11,7 @@ from typing import Any, BinaryIO, Callable, Mapping, Optional, Union
 import numpy as np
 
 from .call import LONG, Call, Operation
-from .errors import DataLoss, FailedPrecondition, InvalidArgument, Unavailable
+from .errors import DataLoss, FailedPrecondition, InvalidArgument, NotFound, Unavailable
 from .names import fill, nearest, row
 from .table import Table
 from .v1 import compare_pb2, export_pb2, physiology_pb2, session_pb2, study_pb2
@@ -99,7 +99,7 @@ class Study:
     took: float
     """Wall time [s]."""
     page: str
-    """A self-contained HTML page of it."""
+    """A self-contained HTML page of it; empty where the server's viewer is not built."""
 
 
 def study(
@@ -120,10 +120,16 @@ def study(
         yield Call("StudyService.WatchStudy", study_pb2.WatchStudyRequest(study_id=id), LONG, note)
         if seen[0].state != study_pb2.STUDY_STATE_DONE:
             raise FailedPrecondition(seen[0].problem or "the study has not ended")
-        page = yield Call("StudyService.GetStudyPage", study_pb2.GetStudyPageRequest(study_id=id))
-        return study_of(seen[0].result, page.html)
+        return study_of(seen[0].result, (yield from _page(id)))
     finally:
         yield Call("StudyService.DeleteStudy", study_pb2.DeleteStudyRequest(study_id=id))
+
+
+def _page(id: str) -> Operation[str]:
+    try:
+        return (yield Call("StudyService.GetStudyPage", study_pb2.GetStudyPageRequest(study_id=id))).html
+    except NotFound:  # the viewer, which draws it, is not built
+        return ""
 
 
 def study_of(result: Any, page: str) -> Study:

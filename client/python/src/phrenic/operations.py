@@ -207,7 +207,7 @@ class SessionOperations:
         )
         answer = yield from self._change("UpdateParameters", request)
         for text in answer.warnings:
-            warnings.warn(text, SimulationWarning, stacklevel=4)
+            warnings.warn(text, SimulationWarning, stacklevel=5)
 
     def _pull(self, body: str, vertex: int, force: Sequence[float]) -> Operation[None]:
         request = session_pb2.PullSessionRequest()
