@@ -52,6 +52,7 @@ class SessionsTest(SessionTest):
         session.step(20)
         name = next(iter(session.measures))
         self.assertEqual(session.measure(name), session.measures[name])
+        self.assertEqual(session.step(1).units["lung volume"], "m^3")
         with self.assertRaisesRegex(phrenic.errors.NotFound, "there is no measure lung volumes"):
             session.measure("lung volumes")
 

@@ -35,5 +35,5 @@ if args.plot:
     pyplot.figure(figsize=(6, 3), layout="constrained")
     pyplot.plot(times, values)
     pyplot.xlabel("time [s]")
-    pyplot.ylabel(f"{args.measure} [SI]")
+    pyplot.ylabel(f"{args.measure} [{frames[0].units[args.measure]}]")
     pyplot.savefig(args.plot, dpi=120)

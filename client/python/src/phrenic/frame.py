@@ -107,6 +107,12 @@ class Frame:
     _positions: bytes = field(repr=False)
     _poses: bytes = field(repr=False)
     _geometry: Optional[Geometry] = field(repr=False)
+    _readings: Sequence[measures_pb2.MeasureReading] = field(repr=False, default=())
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The units of the measures: {"lung volume": "m^3"}."""
+        return {reading.name: reading.unit for reading in self._readings}
 
     @property
     def bodies(self) -> list[str]:
@@ -148,7 +154,7 @@ def readings(messages: Iterable[measures_pb2.MeasureReading]) -> dict[str, float
 def frame_of(
     arrays: state_pb2.StateArrays,
     state_hash: str,
-    measures: Iterable[measures_pb2.MeasureReading],
+    measures: Sequence[measures_pb2.MeasureReading],
     layout: state_pb2.StateLayout,
     geometry: Optional[Geometry],
 ) -> Frame:
@@ -180,13 +186,22 @@ def frame_of(
         arrays.body_positions,
         arrays.poses,
         geometry,
+        measures,
     )
 
 
 def watched_frame(frame: frames_pb2.Frame, geometry: Geometry) -> Frame:
     """Returns the frame of a stream."""
     state = State(frame.tick, frame.time, frame.phase)
-    measures = readings(frame.measures)
     return Frame(
-        frame.tick, frame.time, frame.phase, measures, "", state, frame.positions, frame.poses, geometry
+        frame.tick,
+        frame.time,
+        frame.phase,
+        readings(frame.measures),
+        "",
+        state,
+        frame.positions,
+        frame.poses,
+        geometry,
+        frame.measures,
     )

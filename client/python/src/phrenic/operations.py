@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import uuid
 import warnings
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Iterable, Iterator, Mapping, Optional, Sequence, Union
 
@@ -46,6 +47,12 @@ def source_of(scene: Scene, resolution_mm: Optional[float] = None) -> session_pb
 def parameters_of(values: Optional[Mapping[str, Any]]) -> parameters_pb2.Parameters:
     """Returns live parameters. InvalidArgument for an unknown name, with the nearest one."""
     return fill(parameters_pb2.Parameters(), values or {}, "parameter")
+
+
+@lru_cache
+def parts_of(read: tuple[str, ...]) -> tuple[int, ...]:
+    """Returns the parts of the state by name. InvalidArgument names the nearest one."""
+    return tuple(enum_number(state_pb2.StatePart.DESCRIPTOR, part) for part in read)
 
 
 class SessionOperations:
@@ -105,11 +112,8 @@ class SessionOperations:
             self._geometry = Geometry(bodies)
         return self._geometry
 
-    def _parts(self, read: Iterable[str]) -> list[int]:
-        return [enum_number(state_pb2.StatePart.DESCRIPTOR, part) for part in read]
-
     def _state_request(self, read: Iterable[str]) -> session_pb2.GetStateRequest:
-        return session_pb2.GetStateRequest(session_id=self.id, read=self._parts(read))
+        return session_pb2.GetStateRequest(session_id=self.id, read=parts_of(tuple(read)))
 
     def _frame_of(self, arrays: state_pb2.StateArrays, answer: Any, read: Sequence[str]) -> Frame:
         geometry = self._geometry if "bodies" in read else None
@@ -155,7 +159,7 @@ class SessionOperations:
             yield from self._describe()
         before = self.status.tick
         request = session_pb2.StepSessionRequest(
-            session_id=self.id, ticks=ticks, control_token=self._token, read=self._parts(read)
+            session_id=self.id, ticks=ticks, control_token=self._token, read=parts_of(tuple(read))
         )
         if self._owned:
             request.expected_tick = before
