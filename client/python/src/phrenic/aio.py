@@ -129,8 +129,8 @@ class Session(SessionOperations):
         await self.close()
 
     async def close(self) -> None:
-        """Deletes the session, unless it was joined by attach()."""
-        if self._owned:
+        """Deletes the session, unless it was joined by attach() or has not begun."""
+        if self._owned and self._creation is None:
             await self._connection.run(self._delete())
         if not self._shared:
             await self._connection.close()

@@ -13,6 +13,7 @@ rate             12
 
 from __future__ import annotations
 
+from html import escape
 from typing import Any, Iterable, Iterator, Sequence, overload
 
 import numpy as np
@@ -87,6 +88,14 @@ class Table(Sequence[dict[str, Any]]):
             ).rstrip()
             for line in cells
         )
+
+    def _repr_html_(self) -> str:
+        """The table as notebooks show it."""
+        head = "".join(f"<th>{escape(name)}</th>" for name in self.columns)
+        body = "".join(
+            "<tr>" + "".join(f"<td>{escape(_cell(r[name]))}</td>" for name in self.columns) + "</tr>" for r in self._rows
+        )
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
     def __repr__(self) -> str:
         return f"Table of {len(self)} rows: {', '.join(self.columns)}"
