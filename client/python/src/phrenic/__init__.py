@@ -18,6 +18,7 @@ from .errors import Error
 from .frame import Body, Frame, State
 from .jobs import Comparison, Physiology, Study
 from .operations import EVERYTHING, SimulationWarning
+from .runs import Run, batch
 from .server import LocalServer, Server, connect, default_server, local
 from .session import Session, Studies
 from .table import Table
@@ -31,6 +32,7 @@ __all__ = [
     "Frame",
     "LocalServer",
     "Physiology",
+    "Run",
     "Server",
     "Session",
     "SimulationWarning",
@@ -40,6 +42,7 @@ __all__ = [
     "Table",
     "Tls",
     "aio",
+    "batch",
     "connect",
     "default_server",
     "errors",
