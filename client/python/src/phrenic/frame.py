@@ -1,6 +1,6 @@
 """What a session looks like between two steps: bodies, measures, and every bit of its state.
 
-Positions come as float32 arrays that share the memory of the received message; nothing is decoded or copied. The
+Positions come as float32 arrays over the bytes that protobuf hands out; nothing is decoded or copied after that. The
 encoding is the raw one (CODEC_RAW, STATE_PART_BODIES): it is exact and needs no decoder. Compressed encodings would save
 bandwidth that loopback has.
 """
@@ -30,13 +30,10 @@ class Geometry:
 
     def __init__(self, bodies: Iterable[frames_pb2.GetGeometryResponse]) -> None:
         self.bodies: dict[str, frames_pb2.GetGeometryResponse] = {body.name: body for body in bodies}
-        self._triangles: dict[str, np.ndarray] = {}
-
-    def triangles(self, name: str) -> np.ndarray:
+        self.rest = {name: vectors(body.rest_positions) for name, body in self.bodies.items()}
+        """Positions at rest, (n, 3) float32 [m]."""
+        self.triangles = {name: vectors(body.triangles, "<u4") for name, body in self.bodies.items()}
         """Three vertex indices a triangle, (m, 3) uint32, anticlockwise seen from outside."""
-        if name not in self._triangles:
-            self._triangles[name] = vectors(look_up(self.bodies, name, "body").triangles, "<u4")
-        return self._triangles[name]
 
 
 @dataclass(frozen=True)
@@ -124,8 +121,8 @@ class Frame:
         if self._geometry is None:
             raise ValueError('this frame has no bodies: add "bodies" to read=')
         body = look_up(self._geometry.bodies, name, "body")
-        rest = vectors(body.rest_positions)
-        return Body(name, self._placed(body, rest), self._geometry.triangles(name), rest)
+        rest = self._geometry.rest[name]
+        return Body(name, self._placed(body, rest), self._geometry.triangles[name], rest)
 
     def _placed(self, body: frames_pb2.GetGeometryResponse, rest: np.ndarray) -> np.ndarray:
         if body.placement == frames_pb2.PLACEMENT_STREAMED:

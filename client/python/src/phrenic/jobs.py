@@ -12,7 +12,7 @@ import numpy as np
 
 from .call import LONG, Call, Operation
 from .errors import DataLoss, FailedPrecondition, InvalidArgument, NotFound, Unavailable
-from .names import fill, nearest, row
+from .names import fill, is_repeated, nearest, row
 from .table import Table
 from .v1 import compare_pb2, export_pb2, physiology_pb2, session_pb2, study_pb2
 
@@ -138,7 +138,7 @@ def study_of(result: Any, page: str) -> Study:
     tables = {
         field.name: Table.of(getattr(table, field.name))
         for field in table.DESCRIPTOR.fields
-        if field.message_type and field.label == field.LABEL_REPEATED
+        if field.message_type and is_repeated(field)
     }
     main = tables.get("rows") or next((each for each in tables.values() if len(each)), Table([]))
     return Study(main, tables, getattr(table, "advice", ""), result.took_s, page)

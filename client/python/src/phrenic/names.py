@@ -39,6 +39,11 @@ def look_up(table: Mapping[str, Any], name: str, what: str) -> Any:
     raise NotFound(f"there is no {what} {name}: {nearest(name, table)}")
 
 
+def is_repeated(field: FieldDescriptor) -> bool:
+    """True if the field is a list. Newer versions of protobuf have another name for it."""
+    return bool(field.is_repeated if hasattr(field, "is_repeated") else field.label == field.LABEL_REPEATED)
+
+
 def _prefix(enum: EnumDescriptor) -> str:
     """The common prefix of an enum's names: INTEGRATOR_ of INTEGRATOR_UNSPECIFIED."""
     return enum.values_by_number[0].name[: -len("UNSPECIFIED")]
@@ -83,7 +88,7 @@ def fill(message: M, fields: Mapping[str, Any], what: str = "option") -> M:
 
 def _set(message: Message, field: FieldDescriptor, value: Any) -> None:
     convert = (lambda v: enum_number(field.enum_type, v)) if field.enum_type else (lambda v: v)
-    if field.label == FieldDescriptor.LABEL_REPEATED:
+    if is_repeated(field):
         getattr(message, field.name).extend(convert(each) for each in value)
     else:
         setattr(message, field.name, convert(value))
@@ -106,6 +111,6 @@ def row(message: Message) -> dict[str, Any]:
 
 
 def _plain(field: FieldDescriptor, value: Any) -> Any:
-    if field.label == FieldDescriptor.LABEL_REPEATED:
+    if is_repeated(field):
         return list(value)
     return enum_name(field.enum_type, value) if field.enum_type else value
