@@ -71,6 +71,7 @@ class LocalTest(unittest.TestCase):
         server = phrenic.local()
         pid, folder = server.process.pid, server.process.log.parent
         self.assertEqual(server.version, phrenic.__version__)
+        self.assertNotEqual(os.getpgid(pid), os.getpgid(0), "Ctrl-C would end it")
         self.assertTrue(server.address.startswith("127.0.0.1:"))
         server.close()
         server.close()

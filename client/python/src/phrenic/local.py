@@ -71,7 +71,12 @@ class Process:
         try:
             with open(self.log, "wb") as log:
                 self._process = subprocess.Popen(
-                    self._words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment
+                    self._words,
+                    stdin=subprocess.DEVNULL,
+                    stdout=log,
+                    stderr=log,
+                    env=environment,
+                    start_new_session=True,  # Ctrl-C in a terminal interrupts Python alone
                 )
         finally:
             self._started.set()
