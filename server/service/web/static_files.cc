@@ -120,9 +120,10 @@ absl::StatusOr<StaticFile> FindStaticFile(const std::string& root, std::string_v
   const fs::path path = fs::canonical(folder / relative, error);
   if (error || !IsBelow(folder, path) || !fs::is_regular_file(path, error)) return missing;
   const bool hashed = absl::StartsWith(*decoded, "assets/");
-  StaticFile file = {.path = path.string(),
-                     .content_type = ContentTypeOf(path.string()),
-                     .cache_control = hashed ? "public, max-age=31536000, immutable" : "no-cache"};
+  StaticFile file;
+  file.path = path.string();
+  file.content_type = ContentTypeOf(file.path);
+  file.cache_control = hashed ? "public, max-age=31536000, immutable" : "no-cache";
   Compress(accept_encoding, file);
   file.etag = ETagOf(file.path);
   return file;
