@@ -75,6 +75,7 @@ void AddOption(CLI::App& command, const std::string& name, const FieldDescriptor
 void AddSchemaOptions(CLI::App& command, Message* message) {
   const auto& type = *message->GetDescriptor();
   for (int f = 0; f < type.field_count(); ++f) {
+    if (type.field(f)->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) continue;
     AddOption(command, "--" + absl::StrReplaceAll(type.field(f)->name(), {{"_", "-"}}), type.field(f), message);
   }
 }

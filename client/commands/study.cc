@@ -5,6 +5,7 @@
 #include "absl/strings/str_join.h"
 #include "client/cli/schema_options.h"
 #include "client/cli/shared_options.h"
+#include "client/cli/study_inputs.h"
 #include "client/commands/commands.h"
 #include "client/connection/connection.h"
 #include "client/connection/errors.h"
@@ -47,6 +48,12 @@ const google::protobuf::Message& ResultTables(const v1::StudyResult& result) {
       return result.cost();
     case v1::StudyResult::kStreaming:
       return result.streaming();
+    case v1::StudyResult::kSensitivity:
+      return result.sensitivity();
+    case v1::StudyResult::kUncertainty:
+      return result.uncertainty();
+    case v1::StudyResult::kConvergence:
+      return result.convergence();
     default:
       return result.error();
   }
@@ -101,12 +108,26 @@ void PrintStreaming(const v1::StreamingTable& table) {
                                table.advice(), table.vertices(), table.frames(), table.basis_bytes());
 }
 
+// Says how many runs a table is of, and how many failed.
+template <typename RunsTable>
+void PrintRuns(const RunsTable& table) {
+  std::cout << absl::StrFormat("\n%d runs", table.runs());
+  if (table.failed() > 0) std::cout << absl::StrFormat("; %d FAILED: %s", table.failed(), table.problem());
+  std::cout << "\n";
+}
+
 void PrintStudy(const v1::StudyResult& result) {
   std::cout << absl::StrFormat("%s (scene %.12s), %.1f s\n", result.scene(), result.scene_hash(), result.took_s());
   if (result.has_error()) PrintReference(result.error().reference());
   PrintTables(ResultTables(result), std::cout);
   if (result.has_error()) std::cout << "\n" << result.error().advice() << "\n";
   if (result.has_streaming()) PrintStreaming(result.streaming());
+  if (result.has_sensitivity()) {
+    PrintRuns(result.sensitivity());
+    std::cout << result.sensitivity().advice() << "\n";
+  }
+  if (result.has_uncertainty()) PrintRuns(result.uncertainty());
+  if (result.has_convergence()) PrintRuns(result.convergence());
   for (const std::string& note : result.cost().notes()) std::cout << "\nnote: " << note << "\n";
   if (result.cost().has_growth_exponent()) {
     std::cout << absl::StrFormat("\ncost grows with vertices^%.3f\n", result.cost().growth_exponent());
@@ -269,6 +290,29 @@ CommandFunction SetUpStudyCost(CLI::App& command) {
 CommandFunction SetUpStudyStreaming(CLI::App& command) {
   const auto options = std::make_shared<StudyOptions>();
   return SetUpStudy(command, options, options->request.mutable_streaming());
+}
+
+CommandFunction SetUpStudySensitivity(CLI::App& command) {
+  const auto options = std::make_shared<StudyOptions>();
+  v1::SensitivityStudy* study = options->request.mutable_sensitivity();
+  AddInputs(command, study->mutable_inputs());
+  AddOutputs(command, study->mutable_outputs());
+  return SetUpStudy(command, options, study);
+}
+
+CommandFunction SetUpStudyUncertainty(CLI::App& command) {
+  const auto options = std::make_shared<StudyOptions>();
+  v1::UncertaintyStudy* study = options->request.mutable_uncertainty();
+  AddInputs(command, study->mutable_inputs());
+  AddOutputs(command, study->mutable_outputs());
+  return SetUpStudy(command, options, study);
+}
+
+CommandFunction SetUpStudyConvergence(CLI::App& command) {
+  const auto options = std::make_shared<StudyOptions>();
+  v1::ConvergenceStudy* study = options->request.mutable_convergence();
+  AddOutputs(command, study->mutable_outputs());
+  return SetUpStudy(command, options, study);
 }
 
 CommandFunction SetUpStudyList(CLI::App&) { return ListStudies; }
