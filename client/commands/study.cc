@@ -7,6 +7,7 @@
 #include "client/cli/shared_options.h"
 #include "client/cli/study_inputs.h"
 #include "client/commands/commands.h"
+#include "client/commands/wait_for_study.h"
 #include "client/connection/connection.h"
 #include "client/connection/errors.h"
 #include "client/files/junit.h"
@@ -14,7 +15,6 @@
 #include "client/files/whole_file.h"
 #include "client/print/output.h"
 #include "client/print/rows.h"
-#include "client/terminal/progress.h"
 #include "phrenic/v1/study.grpc.pb.h"
 #include "server/service/server.h"
 
@@ -72,26 +72,6 @@ std::string StudyStateName(v1::StudyState state) {
     default:
       return "unknown";
   }
-}
-
-// Waits for the study and shows a progress bar. `study` receives its last state.
-grpc::Status WaitForStudy(const Context& context, v1::StudyService::Stub& stub, const std::string& id,
-                          v1::Study* study) {
-  v1::WatchStudyRequest request;
-  request.set_study_id(id);
-  Progress progress(id, 1);
-  return StreamWithReconnect(context, [&](OnReceived received) {
-    grpc::ClientContext call;
-    const Interruption::Scope scope(*context.interruption, call);
-    const auto reader = stub.WatchStudy(&call, request);
-    for (v1::WatchStudyResponse response; reader->Read(&response);) {
-      received();
-      progress.SetDetail(response.study().doing());
-      progress.Update(response.study().progress());
-      *study = response.study();
-    }
-    return reader->Finish();
-  });
 }
 
 void PrintReference(const v1::Reference& reference) {

@@ -217,6 +217,7 @@ class Judge {
     for (const v1::CredibilityEvidence& own : context_.evidence()) {
       if (own.section() == v1::CREDIBILITY_SECTION_UNSPECIFIED) continue;
       const auto found = numbers_.find(own.name());
+      if (found == numbers_.end() || !found->second.has_value()) continue;
       At(own.section())
           .add_found(absl::StrFormat("%s: %.4g %s (%s).", own.what(), found->second.value(), own.unit(), own.source()));
     }
