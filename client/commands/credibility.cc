@@ -12,6 +12,7 @@
 #include "absl/time/time.h"
 #include "client/cli/argument_kinds.h"
 #include "client/cli/shared_options.h"
+#include "client/cli/shell_word.h"
 #include "client/commands/commands.h"
 #include "client/commands/wait_for_study.h"
 #include "client/connection/connection.h"
@@ -54,7 +55,7 @@ class EvidenceMaker {
         studies_(v1::StudyService::NewStub(channel)),
         scenes_(v1::SceneService::NewStub(channel)),
         began_(std::chrono::steady_clock::now()) {
-    scene_text_ = Quoted(options.scene.scene);
+    scene_text_ = ShellWord(options.scene.scene);
     if (options.scene.resolution_mm > 0) {
       absl::StrAppend(&scene_text_, " --resolution ", schema::FormatNumber(options.scene.resolution_mm));
     }
@@ -179,7 +180,7 @@ class EvidenceMaker {
 
   absl::Status RunOrders() {
     if (use_.order_scene().empty() && options_.orders.empty()) return absl::OkStatus();
-    commands.orders = absl::StrCat("phrenic study error ", Quoted(use_.order_scene()));
+    commands.orders = absl::StrCat("phrenic study error ", ShellWord(use_.order_scene()));
     if (options_.orders.empty() && IsOutOfBudget("orders")) return absl::OkStatus();
     v1::CreateStudyRequest request;
     request.mutable_source()->set_name(use_.order_scene());
@@ -313,7 +314,7 @@ void AddVersions(const CredibilityOptions& options, const std::string& use_text,
   if (uname(&machine) == 0) AddVersion("machine", absl::StrCat(machine.sysname, " ", machine.machine), evidence);
   AddVersion("made", absl::FormatTime("%Y-%m-%d %H:%M UTC", absl::Now(), absl::UTCTimeZone()), evidence);
   AddVersion("command",
-             absl::StrCat("phrenic credibility ", Quoted(options.scene.scene), " --use ", Quoted(options.use)),
+             absl::StrCat("phrenic credibility ", ShellWord(options.scene.scene), " --use ", ShellWord(options.use)),
              evidence);
 }
 

@@ -1,11 +1,11 @@
 #include "client/credibility/command_text.h"
 
-#include <algorithm>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
+#include "client/cli/shell_word.h"
 #include "phrenic/v1/uncertainty.pb.h"
 #include "server/schema/fields.h"
 
@@ -38,7 +38,7 @@ std::string OutputText(const v1::StudiedOutput& output) {
 }
 
 // Returns the value of a scalar field, or of one of its elements.
-std::string ValueText(const Message& message, const FieldDescriptor& field, int element) {
+std::string FieldText(const Message& message, const FieldDescriptor& field, int element) {
   const auto& reflection = *message.GetReflection();
   const bool one = element < 0;
   switch (field.cpp_type()) {
@@ -57,7 +57,7 @@ std::string ValueText(const Message& message, const FieldDescriptor& field, int 
   }
 }
 
-std::string OptionsOf(const Message& study) {
+std::string StudyOptionsOf(const Message& study) {
   std::string text;
   const auto& reflection = *study.GetReflection();
   std::vector<const FieldDescriptor*> fields;
@@ -66,9 +66,9 @@ std::string OptionsOf(const Message& study) {
     if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) continue;
     std::vector<std::string> values;
     if (field->is_repeated()) {
-      for (int i = 0; i < reflection.FieldSize(study, field); ++i) values.push_back(ValueText(study, *field, i));
+      for (int i = 0; i < reflection.FieldSize(study, field); ++i) values.push_back(FieldText(study, *field, i));
     } else {
-      values.push_back(ValueText(study, *field, -1));
+      values.push_back(FieldText(study, *field, -1));
     }
     absl::StrAppend(&text, " --", absl::StrReplaceAll(field->name(), {{"_", "-"}}), " ", absl::StrJoin(values, ","));
   }
@@ -80,7 +80,8 @@ std::string InputsOf(const Message& message) {
   std::string text;
   const auto* study = dynamic_cast<const Study*>(&message);
   if (study == nullptr) return text;
-  for (const v1::UncertainInput& input : study->inputs()) absl::StrAppend(&text, " --vary ", Quoted(InputText(input)));
+  for (const v1::UncertainInput& input : study->inputs())
+    absl::StrAppend(&text, " --vary ", ShellWord(InputText(input)));
   return text;
 }
 
@@ -90,36 +91,30 @@ std::string OutputsOf(const Message& message) {
   const auto* study = dynamic_cast<const Study*>(&message);
   if (study == nullptr) return text;
   for (const v1::StudiedOutput& each : study->outputs())
-    absl::StrAppend(&text, " --measure ", Quoted(OutputText(each)));
+    absl::StrAppend(&text, " --measure ", ShellWord(OutputText(each)));
   return text;
 }
 
-std::string SettingsOf(const v1::Parameters& parameters) {
+std::string SetOptionsOf(const v1::Parameters& parameters) {
   std::string text;
   std::vector<const FieldDescriptor*> fields;
   parameters.GetReflection()->ListFields(parameters, &fields);
   for (const FieldDescriptor* field : fields) {
-    absl::StrAppend(&text, " --set ", field->name(), "=", ValueText(parameters, *field, -1));
+    absl::StrAppend(&text, " --set ", field->name(), "=", FieldText(parameters, *field, -1));
   }
   return text;
 }
 
 }  // namespace
 
-std::string Quoted(const std::string& text) {
-  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) || c == '_' || c == '-' || c == '.' || c == '/' || c == ':' || c == '=' || c == ',';
-  });
-  return plain ? text : absl::StrCat("'", absl::StrReplaceAll(text, {{"'", "'\\''"}}), "'");
-}
-
 std::string StudyCommand(const std::string& kind, const std::string& scene, const std::string& preset,
                          const v1::Parameters& parameters, const Message& study) {
   std::string text = absl::StrCat("phrenic study ", kind, " ", scene);
-  if (!preset.empty()) absl::StrAppend(&text, " --preset ", Quoted(preset));
-  return absl::StrCat(text, SettingsOf(parameters), InputsOf<v1::SensitivityStudy>(study),
+  if (!preset.empty()) absl::StrAppend(&text, " --preset ", ShellWord(preset));
+  return absl::StrCat(text, SetOptionsOf(parameters), InputsOf<v1::SensitivityStudy>(study),
                       InputsOf<v1::UncertaintyStudy>(study), OutputsOf<v1::SensitivityStudy>(study),
-                      OutputsOf<v1::UncertaintyStudy>(study), OutputsOf<v1::ConvergenceStudy>(study), OptionsOf(study));
+                      OutputsOf<v1::UncertaintyStudy>(study), OutputsOf<v1::ConvergenceStudy>(study),
+                      StudyOptionsOf(study));
 }
 
 }  // namespace phrenic::client

@@ -16,9 +16,6 @@ namespace phrenic::client {
 std::string StudyCommand(const std::string& kind, const std::string& scene, const std::string& preset,
                          const v1::Parameters& parameters, const google::protobuf::Message& study);
 
-// Returns the text in single quotes if a shell would split or change it.
-std::string Quoted(const std::string& text);
-
 }  // namespace phrenic::client
 
 #endif  // PHRENIC_CLIENT_CREDIBILITY_COMMAND_TEXT_H_

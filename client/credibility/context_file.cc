@@ -94,7 +94,7 @@ absl::StatusOr<std::vector<v1::NumberRow>> ReadOwnEvidence(const v1::Credibility
       continue;
     }
     const std::string from =
-        given != files.end() ? given->second : std::filesystem::path(file).parent_path() / evidence.file();
+        given != files.end() ? given->second : (std::filesystem::path(file).parent_path() / evidence.file()).string();
     const auto text = ReadWhole(from, "the evidence");
     if (!text.ok()) return text.status();
     const auto value = NumberInJson(from, *text, evidence.pointer());

@@ -54,7 +54,7 @@ void CountConvergenceRun(const RunOutputs& run, v1::ConvergenceTable& table) {
 }
 
 // Sets the order of the last time step from the last three. Requires: the runs of the steps come first.
-void SetOrders(const Runs& runs, int halvings, v1::ConvergenceTable& table) {
+void SetStepOrders(const Runs& runs, int halvings, v1::ConvergenceTable& table) {
   if (halvings < 2) return;
   const auto last = static_cast<size_t>(halvings);
   const size_t outputs = runs.each.front().values.size();
@@ -107,7 +107,7 @@ absl::StatusOr<v1::ConvergenceTable> StudyConvergence(const v1::CreateStudyReque
     AddConvergenceRows(variants[i], **outputs, runs->each[i], runs->each.front(), table);
     CountConvergenceRun(runs->each[i], table);
   }
-  SetOrders(*runs, study.halvings(), table);
+  SetStepOrders(*runs, study.halvings(), table);
   for (int i = 0; i < study.resolutions_mm_size(); ++i) {
     const Progress part = Part(progress, (of + i) / (of + meshes), (of + i + 1) / (of + meshes));
     absl::Status status = AddResolution(request, study.resolutions_mm(i), compile, runs->each.front(), part, table);
