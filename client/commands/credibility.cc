@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <iostream>
+#include <map>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -14,9 +15,9 @@
 #include "client/cli/shared_options.h"
 #include "client/cli/shell_word.h"
 #include "client/commands/commands.h"
-#include "client/commands/wait_for_study.h"
 #include "client/connection/connection.h"
 #include "client/connection/errors.h"
+#include "client/connection/wait_for_study.h"
 #include "client/credibility/command_text.h"
 #include "client/credibility/context_file.h"
 #include "client/credibility/report.h"
@@ -149,22 +150,41 @@ class EvidenceMaker {
     return absl::OkStatus();
   }
 
+  // Cases of one preset and the same parameters are read off one run.
   absl::Status RunCases() {
+    std::map<std::pair<std::string, std::string>, std::vector<int>> runs;
     for (int i = 0; i < use_.cases_size(); ++i) {
       const v1::CredibilityCase& one = use_.cases(i);
-      v1::CreateStudyRequest request = Begin(one.preset());
-      *request.mutable_parameters() = one.parameters();
-      request.mutable_convergence()->set_halvings(0);
-      *request.mutable_convergence()->add_outputs() = one.output();
+      runs[{one.preset(), one.parameters().SerializeAsString()}].push_back(i);
       v1::NumberRow& row = evidence.numbers.emplace_back();
       row.set_name("case." + one.name());
       row.set_what(one.what());
       row.set_source("one run");
-      row.set_command(StudyCommand("convergence", scene_text_, one.preset(), one.parameters(), request.convergence()));
-      if (IsOutOfBudget("case " + one.name())) continue;
-      const auto result = RunStudy(request, absl::StrCat("case-", i + 1));
-      if (!result.ok()) return result.status();
-      const v1::ConvergenceRow& value = result->convergence().rows(0);
+      v1::ConvergenceStudy study;
+      study.set_halvings(0);
+      *study.add_outputs() = one.output();
+      row.set_command(StudyCommand("convergence", scene_text_, one.preset(), one.parameters(), study));
+    }
+    const size_t first = evidence.numbers.size() - static_cast<size_t>(use_.cases_size());
+    for (const auto& [run, cases] : runs) {
+      if (absl::Status status = RunCase(cases, first); !status.ok()) return status;
+    }
+    return absl::OkStatus();
+  }
+
+  // Sets the numbers of cases that share a run; `first` is that of the first case.
+  absl::Status RunCase(const std::vector<int>& cases, size_t first) {
+    const v1::CredibilityCase& one = use_.cases(cases.front());
+    if (IsOutOfBudget("case " + one.name())) return absl::OkStatus();
+    v1::CreateStudyRequest request = Begin(one.preset());
+    *request.mutable_parameters() = one.parameters();
+    request.mutable_convergence()->set_halvings(0);
+    for (const int i : cases) *request.mutable_convergence()->add_outputs() = use_.cases(i).output();
+    const auto result = RunStudy(request, absl::StrCat("case-", cases.front() + 1));
+    if (!result.ok()) return result.status();
+    for (size_t k = 0; k < cases.size(); ++k) {
+      const v1::ConvergenceRow& value = result->convergence().rows(static_cast<int>(k));
+      v1::NumberRow& row = evidence.numbers[first + static_cast<size_t>(cases[k])];
       row.set_unit(value.unit());
       if (value.has_value()) row.set_value(value.value());
     }

@@ -176,8 +176,11 @@ function evidenceOf(report: CredibilityReport, section: CredibilitySection): HTM
   }
 }
 
+/** Contents behind a heading; a print shows them. */
 function folded(title: string, ...content: HTMLElement[]): HTMLElement {
-  return make("details", {}, make("summary", {}, title), ...content);
+  const details = make("details", {}, make("summary", {}, title), ...content);
+  window.addEventListener("beforeprint", () => (details.open = true));
+  return details;
 }
 
 function exactCases({ exactCases: rows }: CredibilityReport): HTMLElement[] {

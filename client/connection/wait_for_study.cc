@@ -1,4 +1,4 @@
-#include "client/commands/wait_for_study.h"
+#include "client/connection/wait_for_study.h"
 
 #include "client/connection/connection.h"
 #include "client/connection/errors.h"

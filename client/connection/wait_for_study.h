@@ -1,6 +1,6 @@
 // Waits for a study of the server and shows how far it is.
-#ifndef PHRENIC_CLIENT_COMMANDS_WAIT_FOR_STUDY_H_
-#define PHRENIC_CLIENT_COMMANDS_WAIT_FOR_STUDY_H_
+#ifndef PHRENIC_CLIENT_CONNECTION_WAIT_FOR_STUDY_H_
+#define PHRENIC_CLIENT_CONNECTION_WAIT_FOR_STUDY_H_
 
 #include <string>
 
@@ -16,4 +16,4 @@ grpc::Status WaitForStudy(const Context& context, v1::StudyService::Stub& stub, 
 
 }  // namespace phrenic::client
 
-#endif  // PHRENIC_CLIENT_COMMANDS_WAIT_FOR_STUDY_H_
+#endif  // PHRENIC_CLIENT_CONNECTION_WAIT_FOR_STUDY_H_
