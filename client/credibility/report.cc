@@ -236,11 +236,13 @@ class Judge {
   // Sets the verdict from the criteria, and says what is missing.
   void Conclude(v1::SectionReport& section) {
     int holding = 0;
+    std::vector<std::string> open;
     for (const v1::CriterionRow& row : section.criteria()) {
       if (row.verdict() == kHolds) {
         ++holding;
         continue;
       }
+      open.push_back(row.number());
       const std::string now = row.has_value()
                                   ? absl::StrFormat("it is %.4g %s", row.value(), row.unit() == "1" ? "" : row.unit())
                                   : row.verdict();
@@ -255,7 +257,8 @@ class Judge {
     }
     section.set_verdict(holding == all ? v1::SECTION_VERDICT_MET
                                        : (holding > 0 ? v1::SECTION_VERDICT_PARTLY : v1::SECTION_VERDICT_NOT_SHOWN));
-    section.set_reason(absl::StrFormat("%d of %d criteria hold.", holding, all));
+    section.set_reason(absl::StrFormat("%d of %d criteria hold%s%s.", holding, all, open.empty() ? "" : "; not ",
+                                       absl::StrJoin(open, ", ")));
   }
 
   void AddMissing(v1::SectionReport& section, const std::string& what) {

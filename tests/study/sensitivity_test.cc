@@ -220,7 +220,7 @@ v1::CreateStudyRequest SensitivityOfWeight() {
   v1::CreateStudyRequest request;
   Fill(*request.mutable_sensitivity());
   request.mutable_sensitivity()->set_degree(6);
-  request.mutable_sensitivity()->set_samples(32);
+  request.mutable_sensitivity()->set_samples(256);
   return request;
 }
 
@@ -237,12 +237,13 @@ TEST(SensitivityStudy, FindsThatOnlyTheSpringMatters) {
   const v1::SensitivityTable& table = result->sensitivity();
   ASSERT_EQ(table.indices_size(), 4);
   for (const v1::IndexRow& row : table.indices()) {
-    EXPECT_NEAR(row.total(), row.input() == "elasticity" ? 1 : 0, 1e-3) << row.method();
+    const double sampling_error = row.method() == "saltelli" ? 0.01 : 1e-3;
+    EXPECT_NEAR(row.total(), row.input() == "elasticity" ? 1 : 0, sampling_error) << row.method();
   }
   // The mean of 1/e over e in 0.5 to 1.5 is ln 3.
   EXPECT_NEAR(table.fits(0).mean(), kSag * std::log(3), 1e-4 * kSag);
   EXPECT_EQ(table.failed(), 0);
-  EXPECT_EQ(table.runs(), 6 * 3 + 57 + 32 * 4);
+  EXPECT_EQ(table.runs(), 6 * 3 + 57 + 256 * 4);
   EXPECT_THAT(table.advice(), HasSubstr("elasticity"));
 }
 

@@ -37,7 +37,18 @@ const sensitivity = {
 const uncertainty = {
   inputs,
   bands: [
-    { output: "height", unit: "m", nominal: 1, mean: 1.1, deviation: 0.1, p5: 0.9, p25: 1, p50: 1.1, p75: 1.2, p95: 1.3 },
+    {
+      output: "height",
+      unit: "m",
+      nominal: 1,
+      mean: 1.1,
+      deviation: 0.1,
+      p5: 0.9,
+      p25: 1,
+      p50: 1.1,
+      p75: 1.2,
+      p95: 1.3,
+    },
     { output: "failed", unit: "m" },
   ],
   curves: [{ measure: "height", unit: "m", phase: [0, 0.5, 1], p5: [0, 1, 0], p50: [0, 1.5, 0], p95: [0, 2, 0] }],

@@ -44,9 +44,9 @@ export function credibilityParts(report: CredibilityReport): HTMLElement[] {
 }
 
 const howToRead =
-  "A section is met if all of its criteria hold, partly met if some do, and not shown otherwise. Thresholds come from the " +
-  "context of use, a file that its author wrote before the runs; required are the sections that it names, or else those " +
-  "that the model risk demands.";
+  "A section is met if all of its criteria hold, partly met if some do, and not shown otherwise. Thresholds and their " +
+  "reasons are those of the author of the context of use; required are the sections that it names, or else those that " +
+  "the model risk demands.";
 
 function judgement({ adequate, sections, context, scene, modelRisk }: CredibilityReport): HTMLElement {
   const met = sections.filter(({ verdict }) => verdict === SectionVerdict.MET).length;
