@@ -78,9 +78,16 @@ CommandFunction SetUpStudyError(CLI::App& command);
 CommandFunction SetUpStudyStability(CLI::App& command);
 CommandFunction SetUpStudyCost(CLI::App& command);
 CommandFunction SetUpStudyStreaming(CLI::App& command);
+CommandFunction SetUpStudySensitivity(CLI::App& command);
+CommandFunction SetUpStudyUncertainty(CLI::App& command);
+CommandFunction SetUpStudyConvergence(CLI::App& command);
 CommandFunction SetUpStudyList(CLI::App& command);
 CommandFunction SetUpStudyWatch(CLI::App& command);
 CommandFunction SetUpStudyDelete(CLI::App& command);
+// credibility.cc: the studies that a context of use asks for, in this process, and a report of them (credibility/).
+// With
+// --check, kMissed if a required section is not met.
+CommandFunction SetUpCredibility(CLI::App& command);
 // campaign.cc: runs in processes of their own, on this machine or on Slurm (campaign/). `work` is what these processes
 // run. Repeated, `run` continues where it was interrupted. kMissed if a limit is exceeded, kFailed if runs failed.
 CommandFunction SetUpCampaignRun(CLI::App& command);
