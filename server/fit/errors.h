@@ -37,7 +37,7 @@ struct RegionError {
 };
 
 // Returns the errors of the points `indices` by thirds of height and by halves, those with points. `places`:
-// Person::PlaceAt, one column a point; `left`: one entry a point.
+// Person::PlacesAt, one column a point; `left`: one entry a point.
 std::vector<RegionError> ErrorsByRegion(const Points& places, const std::vector<bool>& left, const Points& motion,
                                         const Points& difference, const std::vector<int>& indices);
 

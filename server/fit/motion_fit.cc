@@ -19,24 +19,12 @@ absl::Status CheckPairs(const Landmarks& landmarks) {
                                                  kFewestPairs, ", half of them to judge it"));
 }
 
-Points PlacesOf(const Person& person, const Points& points) {
-  Points places(3, points.cols());
-  for (Eigen::Index i = 0; i < points.cols(); ++i) places.col(i) = person.PlaceAt(points.col(i));
-  return places;
-}
-
-std::vector<bool> LeftOnes(const Person& person, const Points& points) {
-  std::vector<bool> left;
-  for (const auto& point : points.colwise()) left.push_back(person.SideOf(point) == kLeft);
-  return left;
-}
-
 // Sets the parameters and what belongs to them, from the fitting half.
 Eigen::VectorXd FitAmplitudes(const Person& person, const Landmarks& fitting, const FitOptions& options,
                               MotionFit& fit) {
   fit.person.responses = person.Responses(fitting.exhale);
   fit.person.motion = fitting.motion.reshaped();
-  fit.person.descent = fit.descent = DescentOf(PlacesOf(person, fitting.exhale), fitting.motion);
+  fit.person.descent = fit.descent = DescentOf(person.PlacesAt(fitting.exhale), fitting.motion);
   Estimate estimate =
       BootstrapLeastSquares(fit.person.responses, fit.person.motion, kRidge, fitting.exhale, options.split);
   fit.person.amplitudes = estimate.value;
@@ -58,7 +46,7 @@ void Judge(const Person& person, MotionFit& fit) {
   fit.fitting = Summarise(difference, fit.halves.fitting);
   fit.held_out = Summarise(difference, fit.halves.held_out);
   fit.baselines = FitBaselines(fit.exhale, fit.motion, fit.halves);
-  fit.regions = ErrorsByRegion(PlacesOf(person, fit.exhale), LeftOnes(person, fit.exhale), fit.motion, difference,
+  fit.regions = ErrorsByRegion(person.PlacesAt(fit.exhale), person.LeftOnes(fit.exhale), fit.motion, difference,
                                fit.halves.held_out);
 }
 

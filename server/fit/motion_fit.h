@@ -25,7 +25,7 @@ struct FitOptions {
   int numbers = 8;          // amplitudes: 8 or 12
   std::uint64_t split = 1;  // seed of the division into halves
   bool assimilate = false;
-  LungElasticity elasticity;
+  LungElasticity elasticity = {};
 };
 
 struct FittedNumber {

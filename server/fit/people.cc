@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <numeric>
 
 #include "absl/strings/str_format.h"
 #include "server/fit/sides.h"
@@ -47,9 +48,12 @@ PeopleMotion Summarise(const std::vector<const PersonMotion*>& people) {
 }
 
 const PeopleMotion& ShippedPeople(int count) {
-  static const auto* const eight = new PeopleMotion(Numbers({0, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0, 0, 0}));
-  static const auto* const twelve =
-      new PeopleMotion(Numbers({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
+  static const auto* const eight =
+      new PeopleMotion(Numbers({1.0369, 0.9577, 1.3132, 0.431, 0.0976, -0.4848, 0.0954, 0.0095},
+                               {0.2073, 0.2315, 0.388, 0.1475, 0.1286, 0.1895, 0.0751, 0.1073}));
+  static const auto* const twelve = new PeopleMotion(
+      Numbers({1.0967, 1.0146, 1.2824, 1.2282, 0.4775, 0.4655, -0.3975, 0.1025, -0.0193, 0.0162, -0.696, 0.205},
+              {0.2687, 0.2338, 0.4709, 0.2868, 0.1871, 0.3604, 0.2023, 0.0913, 0.0888, 0.1218, 0.4666, 0.7429}));
   return count == 8 ? *eight : *twelve;
 }
 
@@ -69,6 +73,23 @@ absl::StatusOr<Prediction> PredictFromVolume(const Person& person, const PeopleM
   if (per_descent > 0) return PredictFromDescent(person, people, volume / per_descent);
   return absl::FailedPreconditionError(absl::StrFormat(
       "the lungs' volume changes by %.3g ml per mm of descent: give --descent instead", per_descent * 1e3));
+}
+
+MotionBand BandAt(const Person& person, const Prediction& prediction, const Points& points) {
+  const Eigen::MatrixXd responses = person.Responses(points);
+  MotionBand band;
+  band.motion = (responses * prediction.amplitudes).reshaped(3, points.cols());
+  const Eigen::VectorXd variance = responses.cwiseAbs2() * prediction.spread.cwiseAbs2();
+  band.spread = variance.reshaped(3, points.cols()).colwise().sum().cwiseSqrt().transpose();
+  return band;
+}
+
+std::vector<RegionError> BandByRegion(const Person& person, const Points& points, const MotionBand& band) {
+  Points spread = Points::Zero(3, points.cols());
+  spread.row(0) = band.spread.transpose();
+  std::vector<int> all(static_cast<size_t>(points.cols()));
+  std::iota(all.begin(), all.end(), 0);
+  return ErrorsByRegion(person.PlacesAt(points), person.LeftOnes(points), band.motion, spread, all);
 }
 
 double DescentOf(const Points& places, const Points& motion) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "server/fit/errors.h"
 #include "server/fit/person.h"
 
 namespace phrenic::fit {
@@ -34,7 +35,7 @@ const PeopleMotion& ShippedPeople(int count);
 
 // The mean length of the errors that `phrenic study motion` finds when each person is predicted from the others and the
 // descent, per descent [1].
-inline constexpr double kErrorPerDescent = 0.24;
+inline constexpr double kErrorPerDescent = 0.25;
 
 // The expected motion for one number.
 struct Prediction {
@@ -48,8 +49,18 @@ Prediction PredictFromDescent(const Person& person, const PeopleMotion& people, 
 // The descent at which the lungs' volume changes by `volume` [m^3]. FAILED_PRECONDITION if they do not grow with it.
 absl::StatusOr<Prediction> PredictFromVolume(const Person& person, const PeopleMotion& people, double volume);
 
+// The expected motion of points, and how much people differ there.
+struct MotionBand {
+  Points motion;           // 3 x n [m]
+  Eigen::VectorXd spread;  // standard deviation of the motion's length and direction together [m]
+};
+// Requires: a prediction for this person. The numbers vary independently of each other.
+MotionBand BandAt(const Person& person, const Prediction& prediction, const Points& points);
+// Returns the mean motion and, as the error's mean and p95, the spread, over the regions of ErrorsByRegion.
+std::vector<RegionError> BandByRegion(const Person& person, const Points& points, const MotionBand& band);
+
 // Returns the mean downward motion [m] of the fifth of the points that lies lowest in its lung. `places`:
-// Person::PlaceAt. Requires: points.
+// Person::PlacesAt. Requires: points.
 double DescentOf(const Points& places, const Points& motion);
 
 }  // namespace phrenic::fit

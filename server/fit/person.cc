@@ -20,6 +20,7 @@ absl::StatusOr<RegisteredLungs> RegisterLungs(const LungTemplates& templates, co
   if (!sides.ok()) return sides.status();
   RegisteredLungs registered;
   registered.gap = sides->gap;
+  registered.doubts = sides->doubts;
   for (const Side side : {kRight, kLeft}) {
     const std::vector<int> indices = PointsOf(*sides, side);
     const absl::StatusOr<Registration> lung = Register(templates[side], exhale(Eigen::all, indices));
@@ -46,18 +47,27 @@ absl::StatusOr<Person> Person::Make(const LungTemplates& templates, const Regist
       Points& field = person.fields_[side].emplace_back(3, 0);
       if (!person.Moves(a, side)) continue;
       const BoundaryMode& mode = BoundaryModes()[static_cast<size_t>(amplitudes[a].mode)];
-      const ConstPoints displacement = BoundaryDisplacement(person.tissues_[side], side, mode);
-      field = person.tissues_[side].Solve(displacement);
+      field = person.tissues_[side].SolveVectors(BoundaryDisplacement(person.tissues_[side], side, mode));
     }
   }
   return person;
 }
 
-Eigen::Vector3d Person::PlaceAt(const Eigen::Vector3d& point) const {
-  const Side side = SideOf(point);
-  const Eigen::AlignedBox3d& box = tissues_[side].box();
-  const Eigen::Vector3d at = (2 * point - box.min() - box.max()).cwiseQuotient(box.sizes());
-  return {side == kLeft ? at.x() : -at.x(), at.y(), (at.z() + 1) / 2};
+Points Person::PlacesAt(const Points& points) const {
+  Points places(3, points.cols());
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Side side = SideOf(points.col(i));
+    const Eigen::AlignedBox3d& box = tissues_[side].box();
+    const Eigen::Vector3d at = (2 * points.col(i) - box.min() - box.max()).cwiseQuotient(box.sizes());
+    places.col(i) << (side == kLeft ? at.x() : -at.x()), at.y(), (at.z() + 1) / 2;
+  }
+  return places;
+}
+
+std::vector<bool> Person::LeftOnes(const Points& points) const {
+  std::vector<bool> left;
+  for (const auto& point : points.colwise()) left.push_back(SideOf(point) == kLeft);
+  return left;
 }
 
 Eigen::MatrixXd Person::Responses(const Points& points) const {

@@ -20,13 +20,14 @@ using LungTemplates = std::array<LungTemplate, 2>;
 struct RegisteredLungs {
   double gap = 0;  // x [m]
   std::array<Registration, 2> lungs;
-  std::array<int, 2> points = {};  // that each was registered to
+  std::array<int, 2> points = {};   // that each was registered to
+  std::vector<std::string> doubts;  // of LungSides
 };
 
 // The errors of FindSides and Register.
 absl::StatusOr<RegisteredLungs> RegisterLungs(const LungTemplates& templates, const Points& exhale);
 
-// Immutable, thread-safe. Keeps the templates' reference.
+// Immutable, thread-safe.
 class Person {
  public:
   // Factorises both lungs and solves each boundary mode of the amplitudes once: 1 s. The status of LungTissue::Make;
@@ -39,8 +40,10 @@ class Person {
   const std::vector<Amplitude>& amplitudes() const { return amplitudes_; }
   const LungTissue& tissue(Side side) const { return tissues_[side]; }
   Side SideOf(const Eigen::Vector3d& point) const { return point.x() > registered_.gap ? kLeft : kRight; }
-  // Returns the point's place over its lung's box: xi, eta in -1..1 (lateral, posterior) and zeta in 0..1.
-  Eigen::Vector3d PlaceAt(const Eigen::Vector3d& point) const;
+  // Returns each point's place over its lung's box: xi, eta in -1..1 (lateral, posterior) and zeta in 0..1.
+  Points PlacesAt(const Points& points) const;
+  // True for the points of the left lung.
+  std::vector<bool> LeftOnes(const Points& points) const;
 
   // Returns the displacement of the points per amplitude: row 3 i + axis for point i, one column an amplitude [1].
   Eigen::MatrixXd Responses(const Points& points) const;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kWindow = 0.08;  // of the extent, in which points are counted
 constexpr double kEmpty = 0.1;    // density of a gap, relative to the mean
+constexpr double kCertain = 2;    // standard errors
 constexpr int kWindows = 60;      // positions of the window
 constexpr const char* kAxes[] = {"x", "y", "z"};
 
@@ -97,29 +98,56 @@ absl::StatusOr<Gap> GapAlongX(const Points& points) {
       "posterior, +z superior)");
 }
 
-// Requires: points of one lung.
-double BaseOverApex(const Points& lung) {
-  return Deviation(Slice(lung, 2, 0, 0.12), 0) / Deviation(Slice(lung, 2, 0.88, 1), 0);
+// What tells one axis, in standard errors; positive if it is right.
+struct AxisSign {
+  double errors;
+  const char* wrong;  // what is wrong if it is negative, and the remedy
+  const char* doubt;  // what is not known otherwise
+};
+
+// The lungs' widths: ln of base over apex, of both lungs. The error of ln of a deviation of m points is 1/sqrt(2 m).
+double WidthSign(const Points& right, const Points& left) {
+  double sum = 0, variance = 0;
+  for (const Points* lung : {&right, &left}) {
+    const Points base = Slice(*lung, 2, 0, 0.2), apex = Slice(*lung, 2, 0.8, 1);
+    sum += std::log(Deviation(base, 0) / Deviation(apex, 0));
+    variance += 0.5 / static_cast<double>(base.cols()) + 0.5 / static_cast<double>(apex.cols());
+  }
+  return sum / std::sqrt(variance);
 }
 
-absl::Status CheckAxes(const Points& points, const Points& right, const Points& left, double gap) {
-  const double width = (BaseOverApex(right) + BaseOverApex(left)) / 2;
-  if (!(width > 1)) {
-    return absl::InvalidArgumentError(
-        "the lungs are wider at the top than at the base: +z must be superior; reverse the sign of z");
-  }
+// The share of the apices' points that lies at the back.
+double ApexSign(const Points& points) {
   const std::vector<double> y = Coordinates(points, 1);
-  const double middle = (Quantile(y, 0.01) + Quantile(y, 0.99)) / 2;
-  if (ShareAbove(Slice(points, 2, 0.7, 1), 1, middle) < 0.5) {
-    return absl::InvalidArgumentError(
-        "the apices of the lungs lie in front: +y must be posterior; reverse the sign of y, or of x and y if the "
-        "points are RAS (a first line \"# space=ras\" does that)");
-  }
-  const Points low = Slice(points, 2, 0, 0.5);
-  const double front = ShareAbove(Slice(low, 1, 0, 0.3), 0, gap), back = ShareAbove(Slice(low, 1, 0.7, 1), 0, gap);
-  if (front > back) {
-    return absl::InvalidArgumentError(
-        "the heart seems to lie on the right: +x must be the patient's left; reverse the sign of x");
+  const Points top = Slice(points, 2, 0.7, 1);
+  const double share = ShareAbove(top, 1, (Quantile(y, 0.01) + Quantile(y, 0.99)) / 2);
+  return (share - 0.5) * std::sqrt(4.0 * static_cast<double>(top.cols()));
+}
+
+// The share of low points that is in the left lung: less in front, where the heart is, than at the back.
+double HeartSign(const Points& points, double gap) {
+  const Points low = Slice(points, 2, 0, 0.4), front = Slice(low, 1, 0, 0.4), back = Slice(low, 1, 0.6, 1);
+  const double of_front = ShareAbove(front, 0, gap), of_back = ShareAbove(back, 0, gap);
+  const double share = (of_front + of_back) / 2, both = static_cast<double>(std::min(front.cols(), back.cols()));
+  return (of_back - of_front) / std::sqrt(2 * std::max(share * (1 - share), 1e-3) / both);
+}
+
+absl::Status CheckAxes(const Points& points, const Points& right, const Points& left, LungSides& sides) {
+  const AxisSign signs[] = {
+      {WidthSign(right, left),
+       "the lungs are wider at the top than at the base: +z must be superior; reverse the sign of z",
+       "the points do not tell whether +z is superior"},
+      {ApexSign(points),
+       "the apices of the lungs lie in front: +y must be posterior; reverse the sign of y, or of x and y if the points "
+       "are RAS (a first line \"# space=ras\" does that)",
+       "the points do not tell whether +y is posterior"},
+      {HeartSign(points, sides.gap),
+       "the heart seems to lie on the right: +x must be the patient's left; reverse the sign of x",
+       "the points do not tell whether +x is the patient's left"},
+  };
+  for (const AxisSign& sign : signs) {
+    if (!(sign.errors > -kCertain)) return absl::InvalidArgumentError(sign.wrong);
+    if (sign.errors < kCertain) sides.doubts.emplace_back(sign.doubt);
   }
   return absl::OkStatus();
 }
@@ -152,7 +180,7 @@ absl::StatusOr<LungSides> FindSides(const Points& points) {
     return absl::InvalidArgumentError(absl::StrCat("the right lung has ", right.cols(), " points, the left ",
                                                    left.cols(), "; each needs ", kFewestPoints / 4));
   }
-  if (absl::Status status = CheckAxes(points, right, left, gap->at); !status.ok()) return status;
+  if (absl::Status status = CheckAxes(points, right, left, sides); !status.ok()) return status;
   return sides;
 }
 

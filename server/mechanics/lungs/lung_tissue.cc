@@ -149,6 +149,25 @@ Points LungTissue::Solve(const Eigen::VectorXd& g) const {
   return SolveWith(Factors(Stiffness(free)), displacement);
 }
 
+absl::StatusOr<Points> LungTissue::SolveThrough(const ConstPoints& points, const ConstPoints& vectors,
+                                                double weight) const {
+  std::vector<BrickMatrix> bricks(grid_.bricks().size(), BrickMatrix::Zero());
+  Points forces = Points::Zero(3, grid_.nodes().cols());
+  for (Eigen::Index p = 0; p < points.cols(); ++p) {
+    const auto [brick, local] = grid_.Locate(points.col(p));
+    AddSpring(local, weight * Eigen::Matrix3d::Identity(), bricks[brick]);
+    forces(Eigen::all, grid_.bricks()[brick]) += weight * vectors.col(p) * WeightsAt(local).transpose();
+  }
+  Entries entries;
+  for (size_t b = 0; b < bricks.size(); ++b) AddBrick(grid_.bricks()[b], bricks[b], entries);
+  Matrix springs(forces.size(), forces.size());
+  springs.setFromTriplets(entries.begin(), entries.end());
+  const Factors factors(Stiffness(std::vector<bool>(places_.size(), false)) + springs);
+  const Eigen::VectorXd nodes = factors.solve(forces.reshaped());
+  if (factors.info() == Eigen::Success && nodes.allFinite()) return nodes.reshaped(3, grid_.nodes().cols());
+  return absl::InvalidArgumentError("the deformation through the points cannot be solved for: check their numbers");
+}
+
 double LungTissue::Energy(const Points& nodes, const ConstPoints& displacement) const {
   const Eigen::VectorXd u = nodes.reshaped();
   const Matrix stiffness = Stiffness(std::vector<bool>(places_.size(), false));

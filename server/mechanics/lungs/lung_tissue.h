@@ -58,6 +58,10 @@ class LungTissue {
   // The same for displacements of the boundary points (3 x points) [m], whose part along the surface acts through the
   // tangential stiffness.
   Points SolveVectors(const ConstPoints& displacement) const;
+  // Returns the displacement u of the nodes [m] that minimises E + w/2 sum |u(x_i) - r_i|^2 for surroundings at rest:
+  // the smallest deformation through the vectors r (3 x n) [m] at the points x (3 x n) [m], per modulus; `weight` w
+  // [m]. Costs a factorisation. INVALID_ARGUMENT if it fails: a vector that is not finite, or points without number.
+  absl::StatusOr<Points> SolveThrough(const ConstPoints& points, const ConstPoints& vectors, double weight) const;
   // Returns E per Young's modulus [m^3] of a displacement of the nodes.
   double Energy(const Points& nodes, const ConstPoints& displacement) const;
 
