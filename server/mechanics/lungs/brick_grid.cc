@@ -93,41 +93,46 @@ std::vector<bool> BrickGrid::CellsTouched(const Mesh& surface) const {
   return touched;
 }
 
-void BrickGrid::AddBrick(const Eigen::Vector3i& cell, const BrickFractions& fractions, std::vector<int>& node_at,
-                         std::vector<Eigen::Vector3d>& nodes) {
-  const Eigen::Vector3i along = cells_.array() + 1;
-  BrickCorners corners;
-  for (int c = 0; c < 8; ++c) {
-    const Eigen::Vector3i corner = cell + CornerOf(c);
-    int& node = node_at[corner.x() + along.x() * (corner.y() + along.y() * corner.z())];
-    if (node < 0) {
-      node = static_cast<int>(nodes.size());
-      nodes.emplace_back(origin_ + edge_ * corner.cast<double>());
-    }
-    corners[c] = node;
-  }
-  brick_of_cell_[Cell(cell)] = static_cast<int>(bricks_.size());
-  bricks_.push_back(corners);
-  fractions_.push_back(fractions);
-  cell_of_.push_back(cell);
-}
-
 void BrickGrid::AddBricks(const std::vector<float>& fractions, const std::vector<bool>& touched) {
-  std::vector<int> node_at(static_cast<size_t>((cells_.array() + 1).prod()), -1);
-  std::vector<Eigen::Vector3d> nodes;
   brick_of_cell_.assign(touched.size(), -1);
   for (int i = 0; i < static_cast<int>(touched.size()); ++i) {
     const Eigen::Vector3i cell(i % cells_.x(), i / cells_.x() % cells_.y(), i / (cells_.x() * cells_.y()));
     const BrickFractions inside = FractionsIn(cell, fractions);
     const bool holds_volume = std::any_of(inside.begin(), inside.end(), [](float f) { return f > 0; });
-    if (holds_volume || touched[i]) AddBrick(cell, inside, node_at, nodes);
+    if (!holds_volume && !touched[i]) continue;
+    brick_of_cell_[i] = static_cast<int>(cell_of_.size());
+    cell_of_.push_back(cell);
+    fractions_.push_back(inside);
   }
-  nodes_ = Eigen::Map<const Points>(nodes.data()->data(), 3, static_cast<Eigen::Index>(nodes.size()));
+  NumberNodes();
   Points centres(3, static_cast<Eigen::Index>(cell_of_.size()));
   for (Eigen::Index b = 0; b < centres.cols(); ++b) {
     centres.col(b) = origin_ + edge_ * (cell_of_[b].cast<double>().array() + 0.5).matrix();
   }
   centres_.emplace(centres);
+}
+
+void BrickGrid::NumberNodes() {
+  const Eigen::Vector3i along = cells_.array() + 1;
+  const auto index = [&](const Eigen::Vector3i& at) { return at.x() + along.x() * (at.y() + along.y() * at.z()); };
+  std::vector<int> node_at(static_cast<size_t>(along.prod()), -1);
+  for (const Eigen::Vector3i& cell : cell_of_) {
+    for (int c = 0; c < 8; ++c) node_at[index(cell + CornerOf(c))] = 0;
+  }
+  std::vector<Eigen::Vector3d> nodes;
+  for (int i = 0; i < static_cast<int>(node_at.size()); ++i) {
+    const Eigen::Vector3i at(i % along.x(), i / along.x() % along.y(), i / (along.x() * along.y()));
+    if (at.x() == 0 && at.y() == 0) layers_.push_back(static_cast<int>(nodes.size()));
+    if (node_at[i] < 0) continue;
+    node_at[i] = static_cast<int>(nodes.size());
+    nodes.emplace_back(origin_ + edge_ * at.cast<double>());
+  }
+  layers_.push_back(static_cast<int>(nodes.size()));
+  nodes_ = Eigen::Map<const Points>(nodes.data()->data(), 3, static_cast<Eigen::Index>(nodes.size()));
+  for (const Eigen::Vector3i& cell : cell_of_) {
+    BrickCorners& corners = bricks_.emplace_back();
+    for (int c = 0; c < 8; ++c) corners[c] = node_at[index(cell + CornerOf(c))];
+  }
 }
 
 BrickGrid::Place BrickGrid::Locate(const Eigen::Vector3d& point) const {

@@ -42,7 +42,9 @@ class BrickGrid {
   // centroid of a triangle are kept. Requires: `surface` is closed and faces outwards.
   BrickGrid(const Mesh& surface, double edge);
 
-  const Points& nodes() const { return nodes_; }  // 3 x n [m]
+  const Points& nodes() const { return nodes_; }  // 3 x n [m], layer by layer along z
+  // The first node of each layer, and the number of nodes. A brick joins two successive layers.
+  const std::vector<int>& layers() const { return layers_; }
   // The node at each corner of each brick, and the fraction of each of its parts inside the surface, in 0..1.
   const std::vector<BrickCorners>& bricks() const { return bricks_; }
   const std::vector<BrickFractions>& fractions() const { return fractions_; }
@@ -61,15 +63,15 @@ class BrickGrid {
   std::vector<float> FractionsOf(const Mesh& surface) const;
   BrickFractions FractionsIn(const Eigen::Vector3i& cell, const std::vector<float>& fractions) const;
   std::vector<bool> CellsTouched(const Mesh& surface) const;
-  void AddBrick(const Eigen::Vector3i& cell, const BrickFractions& fractions, std::vector<int>& node_at,
-                std::vector<Eigen::Vector3d>& nodes);
   void AddBricks(const std::vector<float>& fractions, const std::vector<bool>& touched);
+  void NumberNodes();
   Eigen::Vector3d InEdges(const Eigen::Vector3d& point) const { return (point - origin_) / edge_; }
 
   double edge_;
   Eigen::Vector3d origin_;  // [m]
   Eigen::Vector3i cells_;
   Points nodes_;
+  std::vector<int> layers_;
   std::vector<BrickCorners> bricks_;
   std::vector<BrickFractions> fractions_;
   std::vector<int> brick_of_cell_;        // -1: none

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/lungs/brick_element.h"
@@ -88,12 +89,12 @@ absl::StatusOr<LungTissue> LungTissue::Make(const Mesh& surface, const LungElast
   if (absl::Status status = CheckElasticity(elasticity); !status.ok()) return status;
   if (absl::Status status = CheckSurface(surface, elasticity.edge); !status.ok()) return status;
   LungTissue tissue(surface, elasticity);
-  const Matrix stiffness = tissue.Stiffness(std::vector<bool>(tissue.places_.size(), false));
   if (stop.Stopped()) return stop.status();
-  tissue.factors_ = std::make_shared<const Factors>(stiffness);
+  std::optional<LayeredCholesky> factors = tissue.Factorise(std::vector<bool>(tissue.places_.size(), false), stop);
   if (stop.Stopped()) return stop.status();
-  if (tissue.factors_->info() == Eigen::Success) return tissue;
-  return absl::InvalidArgumentError("the stiffness of a lung cannot be factorised: check its surface");
+  if (!factors) return absl::InvalidArgumentError("the stiffness of a lung cannot be factorised: check its surface");
+  tissue.factors_ = std::make_shared<const LayeredCholesky>(*std::move(factors));
+  return tissue;
 }
 
 bool LungTissue::Contains(const Eigen::Vector3d& point) const {
@@ -133,8 +134,14 @@ Eigen::VectorXd LungTissue::Forces(const ConstPoints& displacement) const {
   return forces.reshaped();
 }
 
-Points LungTissue::SolveWith(const Factors& factors, const ConstPoints& displacement) const {
-  const Eigen::VectorXd nodes = factors.solve(Forces(displacement));
+std::optional<LayeredCholesky> LungTissue::Factorise(const std::vector<bool>& free, const StopCheck& stop) const {
+  std::vector<int> starts;
+  for (const int node : grid_.layers()) starts.push_back(3 * node);
+  return LayeredCholesky::Make(Stiffness(free), starts, stop);
+}
+
+Points LungTissue::SolveWith(const LayeredCholesky& factors, const ConstPoints& displacement) const {
+  const Eigen::VectorXd nodes = factors.Solve(Forces(displacement));
   return nodes.reshaped(3, grid_.nodes().cols());
 }
 
@@ -146,7 +153,7 @@ Points LungTissue::Solve(const Eigen::VectorXd& g) const {
   if (!g.hasNaN()) return SolveWith(*factors_, displacement);
   std::vector<bool> free;
   for (const double value : g) free.push_back(std::isnan(value));
-  return SolveWith(Factors(Stiffness(free)), displacement);
+  return SolveWith(*Factorise(free, {}), displacement);  // positive definite as the first one was
 }
 
 absl::StatusOr<Points> LungTissue::SolveThrough(const ConstPoints& points, const ConstPoints& vectors,

@@ -62,7 +62,7 @@ TEST(LungTissue, ExpandsUniformlyInAWideningBall) {
     const double expected = elasticity.contact * g / (elasticity.contact * radius + 1 / (1 - 2 * poisson));
     for (const Eigen::Vector3d& point : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.03, 0.02, -0.04)}) {
       const Eigen::Matrix3d error = tissue.GradientAt(nodes, point) - expected * Eigen::Matrix3d::Identity();
-      EXPECT_LT(error.norm(), 0.02 * expected) << poisson;
+      EXPECT_LT(error.norm(), 0.03 * expected) << poisson;
     }
   }
 }
