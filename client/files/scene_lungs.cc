@@ -32,7 +32,7 @@ absl::StatusOr<fit::LungTemplates> ReadSceneLungs(const SceneOptions& options, c
   const session::Models models(session::SceneCatalogue(folders), data_dir, 1);
   const absl::StatusOr<v1::Scene> scene = models.Resolve(*source);
   if (!scene.ok()) return scene.status();
-  const MeshSource meshes = session::MakeMeshSource(data_dir);
+  const MeshSource meshes = session::MakeMeshSource(data_dir, {}, session::MeshCache(session::DefaultCacheFolder()));
   absl::StatusOr<Mesh> right = ReadLung(*scene, v1::SIDE_RIGHT, meshes), left = right;
   if (!right.ok()) return right.status();
   left = ReadLung(*scene, v1::SIDE_LEFT, meshes);

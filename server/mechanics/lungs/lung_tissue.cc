@@ -134,10 +134,14 @@ Eigen::VectorXd LungTissue::Forces(const ConstPoints& displacement) const {
   return forces.reshaped();
 }
 
-std::optional<LayeredCholesky> LungTissue::Factorise(const std::vector<bool>& free, const StopCheck& stop) const {
+std::vector<int> LungTissue::LayerStarts() const {
   std::vector<int> starts;
   for (const int node : grid_.layers()) starts.push_back(3 * node);
-  return LayeredCholesky::Make(Stiffness(free), starts, stop);
+  return starts;
+}
+
+std::optional<LayeredCholesky> LungTissue::Factorise(const std::vector<bool>& free, const StopCheck& stop) const {
+  return LayeredCholesky::Make(Stiffness(free), LayerStarts(), stop);
 }
 
 Points LungTissue::SolveWith(const LayeredCholesky& factors, const ConstPoints& displacement) const {
@@ -169,9 +173,9 @@ absl::StatusOr<Points> LungTissue::SolveThrough(const ConstPoints& points, const
   for (size_t b = 0; b < bricks.size(); ++b) AddBrick(grid_.bricks()[b], bricks[b], entries);
   Matrix springs(forces.size(), forces.size());
   springs.setFromTriplets(entries.begin(), entries.end());
-  const Factors factors(Stiffness(std::vector<bool>(places_.size(), false)) + springs);
-  const Eigen::VectorXd nodes = factors.solve(forces.reshaped());
-  if (factors.info() == Eigen::Success && nodes.allFinite()) return nodes.reshaped(3, grid_.nodes().cols());
+  const auto factors =
+      LayeredCholesky::Make(Stiffness(std::vector<bool>(places_.size(), false)) + springs, LayerStarts(), {});
+  if (factors && forces.allFinite()) return factors->Solve(forces.reshaped()).reshaped(3, grid_.nodes().cols());
   return absl::InvalidArgumentError("the deformation through the points cannot be solved for: check their numbers");
 }
 

@@ -79,6 +79,8 @@ class LungTissue {
   Matrix Stiffness(const std::vector<bool>& free) const;
   // Forces of the springs on the nodes, per modulus.
   Eigen::VectorXd Forces(const ConstPoints& displacement) const;
+  // Of LayeredCholesky.
+  std::vector<int> LayerStarts() const;
   std::optional<LayeredCholesky> Factorise(const std::vector<bool>& free, const StopCheck& stop) const;
   Points SolveWith(const LayeredCholesky& factors, const ConstPoints& displacement) const;
   Eigen::Matrix3d SpringOf(Eigen::Index point) const;
