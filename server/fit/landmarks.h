@@ -1,0 +1,48 @@
+// Points in a person's lungs, at end exhale alone or paired with their places at end inhale.
+//
+// A file is CSV, 3D Slicer's .fcsv or .mrk.json. Coordinates are in mm and LPS (+x left, +y posterior, +z superior),
+// unless the file declares RAS: "# space=ras" in a CSV, CoordinateSystem in an .fcsv, coordinateSystem in a .mrk.json.
+// A CSV has a header that names its columns, in any order: exhale_x, exhale_y, exhale_z and, for pairs, inhale_x,
+// inhale_y, inhale_z; points alone may be called x, y, z. Other columns are ignored, and so are lines that begin with
+// #.
+#ifndef PHRENIC_SERVER_FIT_LANDMARKS_H_
+#define PHRENIC_SERVER_FIT_LANDMARKS_H_
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "server/mesh/mesh.h"
+
+namespace phrenic::fit {
+
+// In metres, one column a landmark.
+struct Landmarks {
+  Points exhale;
+  Points motion;                         // inhale - exhale; as many columns as `exhale`, or none
+  std::vector<std::string> labels = {};  // of a Slicer file; empty otherwise
+
+  Eigen::Index size() const { return exhale.cols(); }
+  bool paired() const { return motion.cols() > 0; }
+};
+
+inline constexpr double kFarthest = 100;  // [m] a coordinate may be from 0
+
+// Parses a file in the format of `name`'s extension; any other extension is read as CSV. INVALID_ARGUMENT
+// "name:line: problem and remedy". Thread-safe, like all functions here.
+absl::StatusOr<Landmarks> ParseLandmarks(std::string_view name, std::string_view bytes);
+
+// Pairs the points of two files, one of end exhale and one of end inhale, in their order. INVALID_ARGUMENT if their
+// numbers differ, a file has pairs already, or two labels differ.
+absl::StatusOr<Landmarks> PairLandmarks(const Landmarks& exhale, const Landmarks& inhale);
+
+// Reads one file of points or pairs, or two files to pair. Also NOT_FOUND with the path.
+absl::StatusOr<Landmarks> ReadLandmarks(const std::vector<std::string>& files);
+
+// Returns the landmarks with these indices.
+Landmarks Select(const Landmarks& landmarks, const std::vector<int>& indices);
+
+}  // namespace phrenic::fit
+
+#endif  // PHRENIC_SERVER_FIT_LANDMARKS_H_
