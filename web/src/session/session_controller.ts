@@ -102,10 +102,16 @@ export class SessionController {
 
   /** Sets a parameter and records the change for undo; rapid changes are merged. */
   set(name: ParameterName, value: number | boolean): void {
-    const before = this.session.value?.parameters?.[name];
-    if (before !== undefined && before !== value)
-      this.changes.record({ [name]: before }, { [name]: value }, this.clock.now());
-    this.updates.push({ [name]: value });
+    this.setTogether({ [name]: value });
+  }
+
+  /** Sets parameters that one control changes together; they are undone together. */
+  setTogether(values: Values): void {
+    const known = { ...this.session.value?.parameters } as unknown as Values;
+    const names = Object.keys(values).filter((name) => known[name] !== undefined && known[name] !== values[name]);
+    const part = (of: Values) => Object.fromEntries(names.map((name) => [name, of[name]]));
+    if (names.length > 0) this.changes.record(part(known), part(values), this.clock.now());
+    this.updates.push(values);
   }
 
   /** Reverts the last change of this viewer. */

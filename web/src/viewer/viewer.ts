@@ -141,12 +141,16 @@ export class Viewer {
     this.refresh();
   }
 
-  /** Clips one side of a plane. Returns its coordinate along its axis [m]. */
-  setCut(cut: Cut): number {
+  /** Clips one side of a plane. */
+  setCut(cut: Cut): void {
     this.cut = cut;
     const plane = this.currentPlane();
     this.renderer.clippingPlanes = plane === undefined ? [] : [plane];
     this.refresh();
+  }
+
+  /** Returns the coordinate of a cut along its axis [m]. */
+  cutCoordinate(cut: Cut): number {
     return planeCoordinate(cut, this.box);
   }
 

@@ -1,0 +1,97 @@
+import type { Browser } from "playwright-core";
+import { afterAll, beforeAll, expect, test } from "vitest";
+import { endAll, startAll, ViewerPage } from "./browser";
+import type { Server } from "./server";
+
+let server: Server;
+let browser: Browser;
+
+beforeAll(async () => {
+  [browser, server] = await startAll();
+});
+
+afterAll(() => endAll(browser, server));
+
+const student = () => `${server.url}?session=thorax&view=student`;
+
+test("AClassChoosesABreathAndMovesASlider", async () => {
+  const viewer = await ViewerPage.open(browser, student(), { width: 1440, height: 900 });
+  const { page } = viewer;
+  const stage = (await page.locator("#stage").boundingBox())!;
+  expect(stage.width / 1440).toBeCloseTo(0.7, 1);
+  expect(await page.locator("#panel").isVisible()).toBe(false);
+  await page.getByRole("button", { name: "Ill", exact: true }).click();
+  await page.getByRole("button", { name: "Right palsy" }).click();
+  await page.waitForSelector('[data-preset="palsy-right"][aria-pressed="true"]');
+  await page.locator("#motion-words", { hasText: "paradoxical motion" }).waitFor({ timeout: 60_000 });
+  expect(await page.textContent("#student")).not.toMatch(/tick|tensegrity|solver|activation/i);
+  expect(await viewer.violations()).toEqual([]);
+  for (const [width, height] of [
+    [1440, 900],
+    [1000, 700],
+    [768, 1024],
+    [320, 640],
+    [600, 360],
+  ]) {
+    await page.setViewportSize({ width, height });
+    await page.waitForTimeout(1500);
+    expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(width);
+    await viewer.saveScreenshot(`student-${width}`);
+  }
+  await page.setViewportSize({ width: 1440, height: 900 });
+  await page.getByLabel("How fast").focus();
+  await page.keyboard.press("End");
+  await expect.poll(async () => (await server.session()).parameters.breath_length).toBe(1);
+  expect(viewer.consoleErrors).toEqual([]);
+  await viewer.close();
+});
+
+test("TheViewIsInTheAddressAndRemembered", async () => {
+  const viewer = await ViewerPage.open(browser, student());
+  const { page } = viewer;
+  expect(new URL(page.url()).searchParams.get("view")).toBe("student");
+  await page.getByRole("button", { name: "Expert" }).click();
+  expect(await page.locator("#panel").isVisible()).toBe(true);
+  expect(new URL(page.url()).searchParams.get("view")).toBe(null);
+  await page.keyboard.press("e");
+  expect(new URL(page.url()).searchParams.get("view")).toBe("student");
+  await page.goto(server.url);
+  await viewer.waitForPicture();
+  expect(await page.locator("#student").isVisible()).toBe(true);
+  await viewer.close();
+});
+
+test("OneKeyComparesWithHealthAndEndsTheCopy", async () => {
+  const viewer = await ViewerPage.open(browser, student(), { width: 1440, height: 900 });
+  const { page } = viewer;
+  await page.getByRole("button", { name: "Ill", exact: true }).click();
+  await page.getByRole("button", { name: "Right palsy" }).click();
+  await page.focus("#view");
+  await page.keyboard.press("b");
+  await page.waitForURL(/beside=/);
+  await viewer.waitForPicture();
+  const words = page.locator("#motion-words", { hasText: "Healthy: both domes fall" });
+  await words.waitFor({ timeout: 60_000 });
+  expect(await words.textContent()).toMatch(
+    /The right dome rises by \d+ mm while the left falls by \d+ mm: paradoxical motion\. A breath brings 0\.\d\d l of air instead of 0\.\d\d\./,
+  );
+  expect(await page.locator('[data-graph="dome-height"] .key').count()).toBe(4);
+  expect(await viewer.violations()).toEqual([]);
+  for (const [width, height] of [
+    [1440, 900],
+    [1000, 700],
+    [768, 1024],
+    [320, 640],
+  ]) {
+    await page.setViewportSize({ width, height });
+    await page.waitForTimeout(2500);
+    await viewer.saveScreenshot(`student-compare-${width}`);
+  }
+  await page.focus("#view");
+  await page.keyboard.press("b");
+  await page.waitForURL((url) => !url.search.includes("beside"));
+  const { sessions } = JSON.parse(await server.phrenic("sessions", "-o", "json"));
+  expect(sessions.map(({ id }: { id: string }) => id)).toEqual(["thorax"]);
+  expect(viewer.consoleErrors).toEqual([]);
+  await viewer.close();
+});

@@ -1,0 +1,130 @@
+import { elementById } from "../dom/elements";
+import type { Frame } from "../gen/phrenic/v1/frames_pb";
+import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
+import type { Preset } from "../gen/phrenic/v1/scene_pb";
+import { valuesOf } from "../graphs/catalogue";
+import { controlledGroup } from "../panels/session/control_dialog";
+import { Choices } from "../panels/student/choices";
+import { compareButton } from "../panels/student/compare_button";
+import { MotionSentence } from "../panels/student/motion_sentence";
+import { sliders } from "../panels/student/sliders";
+import { StudentGraphsPanel } from "../panels/student/student_graphs_panel";
+import { type PageView, rememberPageView, withPageView } from "../session/page_view";
+import type { Participation } from "../session/participation";
+import type { SessionController } from "../session/session_controller";
+import { Signal } from "../state/signal";
+import { TimeSeries } from "../state/time_series";
+import type { SceneTools } from "./scene_tools";
+import type { SecondView } from "./second_view";
+
+/** Duration that is kept [simulated s]. */
+const kept = 60;
+/** End of the colour scale of a comparison [mm]: the domes of a quiet breath move by 10 to 20. */
+const displacementTop = 20;
+
+/** What the student view acts on. */
+export interface StudentParts {
+  controller: SessionController;
+  participation: Participation;
+  presets: Signal<Preset[]>;
+  tools: SceneTools;
+  secondView: SecondView | undefined;
+  /** Opens the page with this query string. */
+  open(query: string): void;
+  /** Called when the layout has changed. */
+  resized(): void;
+}
+
+/** The page as a class sees it: choices, three sliders, two graphs and a sentence. A button changes to the expert view. */
+export class StudentView {
+  readonly element = elementById("student");
+  readonly view: Signal<PageView>;
+  private readonly history = new TimeSeries(kept);
+  private readonly besideHistory = new TimeSeries(kept);
+  private readonly graphs: StudentGraphsPanel;
+  private readonly sentence = new MotionSentence();
+
+  constructor(
+    private readonly parts: StudentParts,
+    first: PageView,
+  ) {
+    const { controller, participation, presets, secondView, open } = parts;
+    this.view = new Signal(first);
+    const beside = secondView === undefined ? undefined : this.besideHistory;
+    this.graphs = new StudentGraphsPanel(this.history, beside, () => controller.sessionId);
+    const close = secondView && (() => void secondView.end().then(() => this.openAlone()));
+    const compare = compareButton({ controller, presets, open, close });
+    const choices = new Choices(controller, presets).element;
+    this.element.append(
+      controlledGroup(participation, choices, compare),
+      this.sentence.element,
+      controlledGroup(participation, sliders(controller)),
+      this.graphs.element,
+    );
+    this.view.subscribe((view) => this.show(view));
+    elementById("view-toggle").onclick = () => this.toggle();
+  }
+
+  /** Changes between the student and the expert view; the browser and the address remember it. */
+  toggle(): void {
+    const view = this.view.value === "student" ? "expert" : "student";
+    rememberPageView(view, localStorage);
+    history.replaceState(null, "", withPageView(location.search, view));
+    this.view.set(view);
+    if (view === "student") this.showComparison();
+  }
+
+  /** Records a frame of the session. */
+  receive(frame: Frame): void {
+    this.history.add(frame.time, valuesOf(frame));
+    this.sentence.receive(frame);
+    this.graphs.receive(frame);
+  }
+
+  /** Records a frame of the session beside. */
+  receiveBeside(frame: Frame): void {
+    this.besideHistory.add(frame.time, valuesOf(frame));
+  }
+
+  /** Starts another scene, which the viewer shows already. */
+  start(): void {
+    this.history.clear();
+    this.besideHistory.clear();
+    if (this.view.value === "student") this.showComparison();
+  }
+
+  /** Draws graphs and the sentence. */
+  draw(): void {
+    if (this.view.value !== "student") return;
+    this.graphs.draw();
+    const source = (history: TimeSeries, parameters: () => Parameters | undefined) => ({ history, parameters });
+    const { controller, secondView } = this.parts;
+    const beside = secondView && source(this.besideHistory, () => secondView.session.value?.parameters);
+    this.sentence.show(
+      source(this.history, () => controller.session.value?.parameters),
+      beside,
+    );
+  }
+
+  private openAlone(): void {
+    this.parts.open(`?${new URLSearchParams({ session: this.parts.controller.sessionId })}`);
+  }
+
+  private show(view: PageView): void {
+    document.body.classList.toggle("student", view === "student");
+    const toggle = elementById("view-toggle");
+    toggle.textContent = view === "student" ? "Expert" : "Student";
+    toggle.title = view === "student" ? "Show every control (E)" : "Plain words and few controls (E)";
+    this.parts.resized();
+  }
+
+  /** Cuts both thoraxes in the coronal plane and colours them by displacement with one scale. */
+  private showComparison(): void {
+    const { tools, secondView } = this.parts;
+    if (secondView === undefined) return;
+    tools.cut.set({ kind: "coronal", fraction: 0.5, flipped: false });
+    tools.coloring.choose("displacement");
+    tools.coloring.setTop(displacementTop);
+    tools.lookFrom("front");
+  }
+}
