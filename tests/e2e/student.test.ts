@@ -14,11 +14,16 @@ afterAll(() => endAll(browser, server));
 
 const student = () => `${server.url}?session=thorax&view=student`;
 
+/** A slow motion, of which a browser without a GPU draws enough frames. */
+const slowly = (viewer: ViewerPage) => viewer.page.selectOption("#speed", "0.25");
+
 test("AClassChoosesABreathAndMovesASlider", async () => {
   const viewer = await ViewerPage.open(browser, student(), { width: 1440, height: 900 });
   const { page } = viewer;
+  await slowly(viewer);
   const stage = (await page.locator("#stage").boundingBox())!;
   expect(stage.width / 1440).toBeCloseTo(0.7, 1);
+  await page.setViewportSize({ width: 900, height: 620 });
   expect(await page.locator("#panel").isVisible()).toBe(false);
   await page.getByRole("button", { name: "Ill", exact: true }).click();
   await page.getByRole("button", { name: "Right palsy" }).click();
@@ -62,8 +67,9 @@ test("TheViewIsInTheAddressAndRemembered", async () => {
 });
 
 test("OneKeyComparesWithHealthAndEndsTheCopy", async () => {
-  const viewer = await ViewerPage.open(browser, student(), { width: 1440, height: 900 });
+  const viewer = await ViewerPage.open(browser, student());
   const { page } = viewer;
+  await slowly(viewer);
   await page.getByRole("button", { name: "Ill", exact: true }).click();
   await page.getByRole("button", { name: "Right palsy" }).click();
   await page.focus("#view");

@@ -40,6 +40,7 @@ import { Comparisons } from "../session/comparisons";
 import { Exports } from "../session/exports";
 import { ForceQueries } from "../session/force_queries";
 import type { PageView } from "../session/page_view";
+import type { LessonPlace } from "../session/lessons";
 import { Participation, refusalReason } from "../session/participation";
 import { SessionController } from "../session/session_controller";
 import { Studies } from "../session/studies";
@@ -66,6 +67,8 @@ export interface PageTarget {
   /** Id of a session that is shown in a second view beside the first. */
   secondSessionId: string | undefined;
   view: PageView;
+  /** The lesson and step that are played. */
+  lesson: LessonPlace | undefined;
   /** Reloads the page with this query string. */
   open(query: string): void;
 }
@@ -192,10 +195,10 @@ export class App {
   }
 
   private openStudentView(): StudentView {
-    const { controller, participation, presets, tools, secondView } = this;
-    const { open, view } = this.target;
-    const resized = () => this.resize();
-    return new StudentView({ controller, participation, presets, tools, secondView, open, resized }, view);
+    const { controller, participation, presets, tools, layerStyles, secondView } = this;
+    const { open, view, lesson } = this.target;
+    const shown = { tools, layerStyles, secondView, resized: () => this.resize() };
+    return new StudentView({ controller, participation, presets, lesson, open, ...shown }, view);
   }
 
   private buildStage(): void {
@@ -270,6 +273,8 @@ export class App {
         { key: "c", description: "Controls", run: panel },
         { key: "b", description: "Compare with healthy", run: press("compare-healthy") },
         { key: "e", description: "Student or expert view", run: () => this.student.toggle() },
+        { key: "PageDown", description: "Next step of the lesson", run: () => this.student.moveInLesson(1) },
+        { key: "PageUp", description: "Step before", run: () => this.student.moveInLesson(-1) },
         { key: "h", description: "Whole scene", run: () => viewer.goTo("home") },
         { key: "f", description: "Front view", run: () => viewer.goTo("front") },
         { key: "p", description: "Save a screenshot", run: () => void photograph() },

@@ -3,6 +3,11 @@ import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import { valuesOf } from "../graphs/catalogue";
+import type { LayerStyles } from "../appearance/layer_styles";
+import type { Lesson, LessonStep, LessonView } from "../gen/phrenic/v1/lesson_pb";
+import { LessonCard } from "../panels/student/lesson_card";
+import { fetchJson, type LessonPlace, presetOf, withLessonPlace } from "../session/lessons";
+import { showLessonView } from "./lesson_scene";
 import { controlledGroup } from "../panels/session/control_dialog";
 import { Choices } from "../panels/student/choices";
 import { compareButton } from "../panels/student/compare_button";
@@ -28,7 +33,10 @@ export interface StudentParts {
   participation: Participation;
   presets: Signal<Preset[]>;
   tools: SceneTools;
+  layerStyles: LayerStyles;
   secondView: SecondView | undefined;
+  /** The lesson of the address. */
+  lesson: LessonPlace | undefined;
   /** Opens the page with this query string. */
   open(query: string): void;
   /** Called when the layout has changed. */
@@ -43,25 +51,38 @@ export class StudentView {
   private readonly besideHistory = new TimeSeries(kept);
   private readonly graphs: StudentGraphsPanel;
   private readonly sentence = new MotionSentence();
+  private readonly lessons: LessonCard;
+  /** The view of the lesson's step, once there is a scene to show. */
+  private lessonView: LessonView | undefined;
 
   constructor(
     private readonly parts: StudentParts,
     first: PageView,
   ) {
-    const { controller, participation, presets, secondView, open } = parts;
+    const { controller, participation, presets, secondView } = parts;
+    this.lessons = new LessonCard({ fetchFile: fetchJson, play: (lesson, step) => this.playStep(lesson, step) });
+    const open = (query: string) => parts.open(withLessonPlace(query, this.lessons.place.value));
     this.view = new Signal(first);
     const beside = secondView === undefined ? undefined : this.besideHistory;
     this.graphs = new StudentGraphsPanel(this.history, beside, () => controller.sessionId);
-    const close = secondView && (() => void secondView.end().then(() => this.openAlone()));
+    const close =
+      secondView &&
+      (() => void secondView.end().then(() => open(`?${new URLSearchParams({ session: controller.sessionId })}`)));
     const compare = compareButton({ controller, presets, open, close });
     const choices = new Choices(controller, presets).element;
     this.element.append(
+      this.lessons.element,
       controlledGroup(participation, choices, compare),
       this.sentence.element,
       controlledGroup(participation, sliders(controller)),
       this.graphs.element,
     );
     this.view.subscribe((view) => this.show(view));
+    this.lessons.place.subscribe((place) => {
+      this.element.classList.toggle("in-lesson", place !== undefined);
+      history.replaceState(null, "", withLessonPlace(location.search, place));
+    });
+    if (parts.lesson !== undefined) void this.lessons.start(parts.lesson);
     elementById("view-toggle").onclick = () => this.toggle();
   }
 
@@ -91,6 +112,12 @@ export class StudentView {
     this.history.clear();
     this.besideHistory.clear();
     if (this.view.value === "student") this.showComparison();
+    if (this.lessonView !== undefined) showLessonView(this.lessonView, this.parts.tools, this.parts.layerStyles);
+  }
+
+  /** Goes on in the lesson by a number of steps. */
+  moveInLesson(by: number): void {
+    this.lessons.move(by);
   }
 
   /** Draws graphs and the sentence. */
@@ -106,8 +133,13 @@ export class StudentView {
     );
   }
 
-  private openAlone(): void {
-    this.parts.open(`?${new URLSearchParams({ session: this.parts.controller.sessionId })}`);
+  /** Sets the parameters of a step, if this viewer may, and shows its view. */
+  private playStep(lesson: Lesson, step: LessonStep): void {
+    const { controller, participation, tools, layerStyles } = this.parts;
+    const preset = presetOf(lesson, step);
+    if (participation.roles.value.mayChange && preset !== "") void controller.usePreset(preset, step.parameters ?? {});
+    this.lessonView = step.view;
+    if (step.view !== undefined) showLessonView(step.view, tools, layerStyles);
   }
 
   private show(view: PageView): void {

@@ -14,8 +14,8 @@ export interface MotionKeys {
   domes: { key: string; name: string }[];
 }
 
-/** Largest gap between two values, as a part of the breath: a frame that was left out hides at most 2 % of the volume. */
-const largestGap = 1 / 10;
+/** Largest gap between two values, as a part of the breath: it hides at most a tenth of the motion of a cosine. */
+const largestGap = 1 / 5;
 
 /**
  * Returns the motion of the last `period` seconds of `history`; undefined if the history since `since` [s] is shorter
@@ -31,7 +31,8 @@ export function breathMotion(
   if (end === undefined || end - period < Math.max(since, history.times[0])) return undefined;
   const volumes = history.series.get(keys.volume);
   const first = history.indexAt(end - period);
-  if (volumes === undefined || hasGap(history.times.slice(Math.max(0, first - 1)), largestGap * period)) return undefined;
+  if (volumes === undefined || hasGap(history.times.slice(Math.max(0, first - 1)), largestGap * period))
+    return undefined;
   let [emptiest, fullest] = [first, first];
   for (let i = emptiest; i < volumes.length; i++) {
     if (volumes[i] < volumes[emptiest]) emptiest = i;

@@ -14,8 +14,10 @@ export interface PlotEvents {
   cursor(place: number | undefined): void;
 }
 
-const faint = "#b6c0ca";
-const grid = { stroke: "#2a323b", width: 1 };
+/** Returns a colour of the style sheet as it is now. */
+const styled = (name: string) => () => getComputedStyle(document.documentElement).getPropertyValue(name);
+const faint = styled("--faint");
+const grid = { stroke: styled("--line"), width: 1 };
 const font = "11px system-ui, sans-serif";
 const plotHeight = 104;
 
@@ -75,7 +77,7 @@ export class Plot {
       series: [
         {},
         ...curves.map(({ order, dashed }, i) => ({
-          stroke: curveColor(order ?? i),
+          stroke: () => curveColor(order ?? i),
           width: 1.6,
           dash: dashed === true ? [5, 4] : [],
           points: { show: false },

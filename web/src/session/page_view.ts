@@ -6,12 +6,13 @@ export type PageView = "student" | "expert";
 const key = "phrenic-view";
 
 /**
- * Returns the view of a page: the one that its address names, else the one that this browser chose last, else the
- * student view for a join link and the expert view for other addresses.
+ * Returns the view of a page: the one that its address names, the student view for a lesson, else the one that this
+ * browser chose last, else the student view for a join link and the expert view for other addresses.
  */
 export function pageViewOf(address: URL, storage: KeyValueStorage): PageView {
   const joins = new URLSearchParams(address.hash.slice(1)).has("join");
-  const wanted = address.searchParams.get("view") ?? storage.getItem(key) ?? (joins ? "student" : "expert");
+  const lesson = address.searchParams.has("lesson") ? "student" : null;
+  const wanted = address.searchParams.get("view") ?? lesson ?? storage.getItem(key) ?? (joins ? "student" : "expert");
   return wanted === "student" ? "student" : "expert";
 }
 

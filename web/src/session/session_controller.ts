@@ -11,7 +11,8 @@ import type { Clock } from "../timing/clock";
 import { CoalescingSender } from "../timing/coalescing_sender";
 
 type PullValues = MessageInitShape<typeof PullSchema>;
-type ParameterValues = Omit<MessageInitShape<typeof ParametersSchema>, "$typeName">;
+/** Some live parameters. */
+export type ParameterValues = Omit<MessageInitShape<typeof ParametersSchema>, "$typeName">;
 
 /** Playback speed: simulated seconds per second, or as fast as possible. */
 export type Speed = number | "fastest";
@@ -156,9 +157,9 @@ export class SessionController {
     return this.updates.pending(name);
   }
 
-  /** Sets the parameters of one of the scene's presets. */
-  usePreset(preset: string): Promise<void> {
-    return this.recordChange(() => this.send({}, preset));
+  /** Sets the parameters of one of the scene's presets; `overrides` take precedence over them. */
+  usePreset(preset: string, overrides: ParameterValues = {}): Promise<void> {
+    return this.recordChange(() => this.send(overrides, preset));
   }
 
   /**

@@ -7,7 +7,7 @@ import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
 
 /** Choices of a cause that are shown before "More" is pressed. */
-const shownAtFirst = 9;
+const shownAtFirst = 8;
 
 /** Large buttons that choose a preset, by what causes the breath: health, illness, a machine. */
 export class Choices {

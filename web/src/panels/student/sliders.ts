@@ -104,7 +104,8 @@ function slider(name: string, { label, low, high }: Words, changed: (position: n
     input.value = String(position);
     fill(position);
   };
-  const ends = make("span", { className: "ends", ariaHidden: "true" }, make("span", {}, low), make("span", {}, high));
-  const element = make("div", { className: "effort" }, make("label", { htmlFor: id }, label), output, input, ends);
+  const end = (words: string) => make("span", { ariaHidden: "true" }, words);
+  const ends = make("div", { className: "ends" }, end(low), input, end(high));
+  const element = make("div", { className: "effort" }, make("label", { htmlFor: id }, label), output, ends);
   return { element, show };
 }
