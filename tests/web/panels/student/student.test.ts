@@ -39,7 +39,10 @@ test("ChoicesFollowThePresetThatAnotherViewerChose", () => {
     preset("copd", "Lungs and pleura", { diaphragmActivation: 0.5 }),
   ]);
   receive({});
-  const pressed = () => [...element.querySelectorAll("button")].filter(({ ariaPressed }) => ariaPressed === "true").map((each) => each.textContent);
+  const pressed = () =>
+    [...element.querySelectorAll("button")]
+      .filter(({ ariaPressed }) => ariaPressed === "true")
+      .map((each) => each.textContent);
   expect(pressed()).toEqual(["Healthy", "Quiet"]);
   receive({ diaphragmActivation: 0.5 });
   expect(pressed()).toEqual(["Ill", "Copd"]);
