@@ -116,7 +116,7 @@ test("ATeacherGoesThroughALessonByKeyboard", async () => {
   const viewer = await ViewerPage.open(browser, `${server.url}?session=thorax&view=student`);
   const { page } = viewer;
   await page.getByText("Lessons", { exact: true }).click();
-  expect(await page.locator("[data-lesson]").count()).toBe(names.length);
+  await expect.poll(() => page.locator("[data-lesson]").count()).toBe(names.length);
   await page.locator('[data-lesson="paralysis"]').click();
   await page.getByRole("heading", { name: "Two nerves, two domes" }).waitFor();
   await page.keyboard.press("PageDown");
