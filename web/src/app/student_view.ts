@@ -12,6 +12,7 @@ import { controlledGroup } from "../panels/session/control_dialog";
 import { Choices } from "../panels/student/choices";
 import { compareButton } from "../panels/student/compare_button";
 import { MotionSentence } from "../panels/student/motion_sentence";
+import { PredictionPad } from "../panels/student/prediction_pad";
 import { sliders } from "../panels/student/sliders";
 import { StudentGraphsPanel } from "../panels/student/student_graphs_panel";
 import { type PageView, rememberPageView, withPageView } from "../session/page_view";
@@ -52,6 +53,7 @@ export class StudentView {
   private readonly graphs: StudentGraphsPanel;
   private readonly sentence = new MotionSentence();
   private readonly lessons: LessonCard;
+  private readonly prediction: PredictionPad;
   /** The view of the lesson's step, once there is a scene to show. */
   private lessonView: LessonView | undefined;
 
@@ -70,12 +72,15 @@ export class StudentView {
       (() => void secondView.end().then(() => open(`?${new URLSearchParams({ session: controller.sessionId })}`)));
     const compare = compareButton({ controller, presets, open, close });
     const choices = new Choices(controller, presets).element;
+    const key = () => this.graphs.volumeKey;
+    this.prediction = new PredictionPad({ controller, history: this.history, key });
     this.element.append(
       this.lessons.element,
       controlledGroup(participation, choices, compare),
       this.sentence.element,
       controlledGroup(participation, sliders(controller)),
       this.graphs.element,
+      controlledGroup(participation, this.prediction.element),
     );
     this.view.subscribe((view) => this.show(view));
     this.lessons.place.subscribe((place) => {
@@ -124,6 +129,7 @@ export class StudentView {
   draw(): void {
     if (this.view.value !== "student") return;
     this.graphs.draw();
+    this.prediction.draw();
     const source = (history: TimeSeries, parameters: () => Parameters | undefined) => ({ history, parameters });
     const { controller, secondView } = this.parts;
     const beside = secondView && source(this.besideHistory, () => secondView.session.value?.parameters);

@@ -1,5 +1,5 @@
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
-import type { TimeSeries } from "../state/time_series";
+import { type TimeSeries, valueAt } from "../state/time_series";
 import type { MotionKeys } from "./breath_motion";
 import { domeHeights, graphsOf, type GraphSpec } from "./catalogue";
 
@@ -68,15 +68,4 @@ export function joinSeries(joined: TimeSeries, here: TimeSeries, beside: TimeSer
     ]);
     joined.add(time, [...own, ...others]);
   }
-}
-
-/** Returns a value at a time within a series, interpolated linearly. */
-function valueAt(history: TimeSeries, key: string, time: number): number {
-  const { times } = history;
-  const values = history.series.get(key) ?? [];
-  const next = history.indexAt(time);
-  if (next <= 0) return values[0];
-  if (next >= times.length) return values[values.length - 1];
-  const part = (time - times[next - 1]) / (times[next] - times[next - 1]);
-  return values[next - 1] + part * (values[next] - values[next - 1]);
 }

@@ -45,6 +45,11 @@ export class StudentGraphsPanel {
     for (const tile of this.shown) tile.show({ start: end - span, end }, undefined);
   }
 
+  /** Key of the lung volume in the history; undefined for a scene without one. */
+  get volumeKey(): string | undefined {
+    return this.specs.volume?.curves[0].key;
+  }
+
   private get drawn(): TimeSeries {
     return this.beside === undefined ? this.history : this.joined;
   }
