@@ -108,3 +108,26 @@ test("OneKeyComparesWithHealthAndEndsTheCopy", { timeout: 240_000 }, async () =>
   expect(viewer.consoleErrors).toEqual([]);
   await viewer.close();
 });
+
+test("ABreathIsPredictedPlayedAndMeasured", async () => {
+  const viewer = await ViewerPage.open(browser, student());
+  const { page } = viewer;
+  await page.getByRole("button", { name: "Predict the next breath" }).click();
+  await page.waitForSelector('#play[aria-label="Play"]');
+  await page.locator("#prediction svg").scrollIntoViewIfNeeded();
+  const box = (await page.locator("#prediction svg").boundingBox())!;
+  const [x, y] = [(part: number) => box.x + part * box.width, (part: number) => box.y + part * box.height];
+  await page.mouse.move(x(0.01), y(0.7));
+  await page.mouse.down();
+  await page.mouse.move(x(0.5), y(0.2), { steps: 8 });
+  await page.mouse.move(x(0.99), y(0.7), { steps: 8 });
+  await page.mouse.up();
+  expect(await viewer.violations()).toEqual([]);
+  await page.getByRole("button", { name: "Play and see" }).click();
+  await page
+    .locator("#prediction-words", { hasText: /On average they are 0\.\d\d l apart/ })
+    .waitFor({ timeout: 60_000 });
+  await viewer.saveScreenshot("student-prediction");
+  expect(viewer.consoleErrors).toEqual([]);
+  await viewer.close();
+});

@@ -39,8 +39,8 @@ import { CameraSharing } from "../session/camera_sharing";
 import { Comparisons } from "../session/comparisons";
 import { Exports } from "../session/exports";
 import { ForceQueries } from "../session/force_queries";
-import type { PageView } from "../session/page_view";
 import type { LessonPlace } from "../session/lessons";
+import type { PageView } from "../session/page_view";
 import { Participation, refusalReason } from "../session/participation";
 import { SessionController } from "../session/session_controller";
 import { Studies } from "../session/studies";
@@ -195,10 +195,10 @@ export class App {
   }
 
   private openStudentView(): StudentView {
-    const { controller, participation, presets, tools, layerStyles, secondView } = this;
+    const { controller, participation, presets, report, tools, layerStyles, secondView } = this;
     const { open, view, lesson } = this.target;
     const shown = { tools, layerStyles, secondView, resized: () => this.resize() };
-    return new StudentView({ controller, participation, presets, lesson, open, ...shown }, view);
+    return new StudentView({ controller, participation, presets, report, lesson, open, ...shown }, view);
   }
 
   private buildStage(): void {

@@ -1,5 +1,5 @@
-import type { LayerStyles } from "../appearance/layer_styles";
 import type { FieldKind } from "../appearance/fields";
+import type { LayerStyles } from "../appearance/layer_styles";
 import type { LessonView } from "../gen/phrenic/v1/lesson_pb";
 import type { CutKind } from "../viewer/clipping";
 import type { ViewName } from "../viewer/named_views";

@@ -111,6 +111,11 @@ export class SceneTools {
       this.overlays.set(new Set([...this.overlays.value, "links"]));
   }
 
+  /** Shows the second view's state as a ghost, if that is selected. */
+  showBeside(arrays: FrameArrays | undefined): void {
+    this.ghosts.showBeside(arrays);
+  }
+
   /** Moves the camera to a named view. */
   lookFrom(view: ViewName): void {
     this.viewer.goTo(view);

@@ -106,6 +106,7 @@ export class SecondView {
   /** Updates the headers; `now` is in ms. */
   updateStatus(primaryFrame: Frame | undefined, now: number): void {
     this.headers.update([primaryFrame, this.frames.replayedFrame ?? this.frames.liveFrame(now)]);
+    this.primary.tools.showBeside(this.frames.displayed?.arrays);
     const [here, there] = [this.primary.frames, this.frames].map(({ frame }) => frame?.time ?? 0);
     this.resynchronise(Math.abs(here - there));
   }

@@ -1,25 +1,26 @@
+import type { LayerStyles } from "../appearance/layer_styles";
 import { elementById } from "../dom/elements";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
+import type { Lesson, LessonStep, LessonView } from "../gen/phrenic/v1/lesson_pb";
 import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
+import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import { valuesOf } from "../graphs/catalogue";
-import type { LayerStyles } from "../appearance/layer_styles";
-import type { Lesson, LessonStep, LessonView } from "../gen/phrenic/v1/lesson_pb";
-import { LessonCard } from "../panels/student/lesson_card";
-import { fetchJson, type LessonPlace, presetOf, withLessonPlace } from "../session/lessons";
-import { showLessonView } from "./lesson_scene";
 import { controlledGroup } from "../panels/session/control_dialog";
 import { Choices } from "../panels/student/choices";
 import { compareButton } from "../panels/student/compare_button";
+import { LessonCard } from "../panels/student/lesson_card";
 import { MotionSentence } from "../panels/student/motion_sentence";
 import { PredictionPad } from "../panels/student/prediction_pad";
 import { sliders } from "../panels/student/sliders";
 import { StudentGraphsPanel } from "../panels/student/student_graphs_panel";
+import { fetchJson, type LessonPlace, presetOf, withLessonPlace } from "../session/lessons";
 import { type PageView, rememberPageView, withPageView } from "../session/page_view";
 import type { Participation } from "../session/participation";
 import type { SessionController } from "../session/session_controller";
 import { Signal } from "../state/signal";
 import { TimeSeries } from "../state/time_series";
+import { showLessonView } from "./lesson_scene";
 import type { SceneTools } from "./scene_tools";
 import type { SecondView } from "./second_view";
 
@@ -33,6 +34,7 @@ export interface StudentParts {
   controller: SessionController;
   participation: Participation;
   presets: Signal<Preset[]>;
+  report: Signal<CompileReport | undefined>;
   tools: SceneTools;
   layerStyles: LayerStyles;
   secondView: SecondView | undefined;
@@ -74,14 +76,17 @@ export class StudentView {
     const choices = new Choices(controller, presets).element;
     const key = () => this.graphs.volumeKey;
     this.prediction = new PredictionPad({ controller, history: this.history, key });
-    this.element.append(
-      this.lessons.element,
+    const [act, play] = [
       controlledGroup(participation, choices, compare),
-      this.sentence.element,
-      controlledGroup(participation, sliders(controller)),
-      this.graphs.element,
       controlledGroup(participation, this.prediction.element),
-    );
+    ];
+    const efforts = controlledGroup(participation, sliders(controller));
+    parts.report.subscribe((report) => {
+      efforts.hidden = report?.idleParameters.includes("diaphragm_activation") ?? false;
+    });
+    // A comparison is read from its graphs: they come first.
+    const rest = secondView === undefined ? [efforts, this.graphs.element] : [this.graphs.element, efforts];
+    this.element.append(this.lessons.element, act, this.sentence.element, ...rest, play);
     this.view.subscribe((view) => this.show(view));
     this.lessons.place.subscribe((place) => {
       this.element.classList.toggle("in-lesson", place !== undefined);
@@ -156,13 +161,17 @@ export class StudentView {
     this.parts.resized();
   }
 
-  /** Cuts both thoraxes in the coronal plane and colours them by displacement with one scale. */
+  /**
+   * Cuts both thoraxes in the coronal plane, colours them by displacement with one scale, and shows the healthy
+   * diaphragm as a ghost in the other.
+   */
   private showComparison(): void {
     const { tools, secondView } = this.parts;
     if (secondView === undefined) return;
     tools.cut.set({ kind: "coronal", fraction: 0.5, flipped: false });
     tools.coloring.choose("displacement");
     tools.coloring.setTop(displacementTop);
+    tools.ghost.set("beside");
     tools.lookFrom("front");
   }
 }

@@ -36,6 +36,7 @@ const ghosts: [GhostKind, string][] = [
   ["rest", "At rest"],
   ["expiration", "At the end of expiration"],
   ["now", "Current state"],
+  ["beside", "The second view"],
 ];
 
 /** A panel for colours, transparency, clipping, ghost, overlays and labels. */
