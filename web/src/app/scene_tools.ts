@@ -111,7 +111,7 @@ export class SceneTools {
       this.overlays.set(new Set([...this.overlays.value, "links"]));
   }
 
-  /** Shows the second view's state as a ghost, if that is selected. */
+  /** Shows the outline of the second view's tissue, if that is selected. */
   showBeside(arrays: FrameArrays | undefined): void {
     this.ghosts.showBeside(arrays);
   }

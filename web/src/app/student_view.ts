@@ -162,8 +162,8 @@ export class StudentView {
   }
 
   /**
-   * Cuts both thoraxes in the coronal plane, colours them by displacement with one scale, and shows the healthy
-   * diaphragm as a ghost in the other.
+   * Cuts both thoraxes in the coronal plane, colours them by displacement with one scale, and outlines the healthy
+   * diaphragm in the other.
    */
   private showComparison(): void {
     const { tools, secondView } = this.parts;

@@ -32,9 +32,9 @@ export class GhostSelector {
     if (turned && this.kind.value === "expiration") this.viewer.setGhost(this.arrays(), this.deformable);
   }
 
-  /** Shows the second view's state of the same bodies, if that is selected. */
+  /** Shows the outline of the same bodies in the second view, if that is selected. */
   showBeside(arrays: FrameArrays | undefined): void {
-    if (this.kind.value === "beside") this.viewer.setGhost(arrays, this.deformable);
+    if (this.kind.value === "beside") this.viewer.setGhost(arrays, this.deformable, true);
   }
 
   private show(known = true): void {

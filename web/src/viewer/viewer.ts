@@ -154,10 +154,10 @@ export class Viewer {
     return planeCoordinate(cut, this.box);
   }
 
-  /** Shows bodies as a ghost, in the state of `arrays` or at rest; undefined removes it. */
-  setGhost(of: FrameArrays | "rest" | undefined, bodies: Body[]): void {
+  /** Shows bodies as a ghost or its outline, in the state of `arrays` or at rest; undefined removes it. */
+  setGhost(of: FrameArrays | "rest" | undefined, bodies: Body[], outline = false): void {
     if (of === undefined) this.ghost.clear();
-    else this.ghost.show(bodies, of === "rest" ? undefined : of);
+    else this.ghost.show(bodies, of === "rest" ? undefined : of, outline);
     this.refresh();
   }
 
