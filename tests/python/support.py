@@ -12,7 +12,8 @@ import grpc
 import phrenic
 from phrenic.v1 import server_pb2, server_pb2_grpc, session_pb2, session_pb2_grpc
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "client" / "python" / "examples"
+REPOSITORY = Path(__file__).resolve().parents[2]
+EXAMPLES = REPOSITORY / "client" / "python" / "examples"
 
 
 class SessionTest(unittest.TestCase):
