@@ -16,6 +16,7 @@
 #include "client/print/motion_fit.h"
 #include "client/terminal/progress.h"
 #include "server/fit/motion_fit.h"
+#include "server/fit/read_landmarks.h"
 #include "server/meshio/meshio.h"
 #include "server/service/calls/status.h"
 
@@ -56,7 +57,9 @@ absl::Status WriteLungs(const std::string& folder, const fit::LungTemplates& tem
 int RegisterPerson(const Context& context, const RegisterOptions& options) {
   const auto points = fit::ReadLandmarks(options.exhale);
   if (!points.ok()) return Fail(points.status());
-  const auto templates = ReadSceneLungs(options.scene, options.data_dir);
+  const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
+  if (!scene.ok()) return Fail(scene.status());
+  const auto templates = ReadSceneLungs(*scene, options.data_dir);
   if (!templates.ok()) return FailFit(context, templates.status());
   const auto registered = WithProgress("registering", [&] { return fit::RegisterLungs(*templates, points->exhale); });
   if (!registered.ok()) return FailFit(context, registered.status());
@@ -92,7 +95,9 @@ std::string FitUsageFault(const FitCommandOptions& options) {
 int FitLandmarks(const Context& context, const FitCommandOptions& options) {
   const auto landmarks = fit::ReadLandmarks(options.landmarks);
   if (!landmarks.ok()) return Fail(landmarks.status());
-  const auto templates = ReadSceneLungs(options.scene, options.data_dir);
+  const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
+  if (!scene.ok()) return Fail(scene.status());
+  const auto templates = ReadSceneLungs(*scene, options.data_dir);
   if (!templates.ok()) return FailFit(context, templates.status());
   absl::StatusOr<fit::MotionFit> found = absl::UnknownError("");
   {
@@ -155,7 +160,9 @@ int PrintAndWriteExpected(const Context& context, const FitCommandOptions& optio
 int FitOneNumber(const Context& context, const FitCommandOptions& options) {
   const auto points = fit::ReadLandmarks(options.exhale);
   if (!points.ok()) return Fail(points.status());
-  const auto templates = ReadSceneLungs(options.scene, options.data_dir);
+  const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
+  if (!scene.ok()) return Fail(scene.status());
+  const auto templates = ReadSceneLungs(*scene, options.data_dir);
   if (!templates.ok()) return FailFit(context, templates.status());
   const auto registered = fit::RegisterLungs(*templates, points->exhale);
   if (!registered.ok()) return FailFit(context, registered.status());

@@ -24,7 +24,9 @@ struct MotionStudyOptions {
 absl::StatusOr<fit::MotionStudy> RunMotionStudy(const Context& context, const MotionStudyOptions& options) {
   const auto cases = fit::ReadCases(options.cases);
   if (!cases.ok()) return cases.status();
-  const auto templates = ReadSceneLungs(options.scene, options.data_dir);
+  const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
+  if (!scene.ok()) return scene.status();
+  const auto templates = ReadSceneLungs(*scene, options.data_dir);
   if (!templates.ok()) return templates.status();
   Progress progress("fitting people", 1);
   return fit::StudyMotion(*templates, *cases, options.fit, [&](double done, std::string_view stage) {

@@ -24,13 +24,11 @@ absl::StatusOr<Mesh> ReadLung(const v1::Scene& scene, v1::Side side, const MeshS
 
 }  // namespace
 
-absl::StatusOr<fit::LungTemplates> ReadSceneLungs(const SceneOptions& options, const std::string& data_dir) {
-  const absl::StatusOr<v1::SceneSource> source = ReadScene(options);
-  if (!source.ok()) return source.status();
+absl::StatusOr<fit::LungTemplates> ReadSceneLungs(const v1::SceneSource& source, const std::string& data_dir) {
   std::vector<std::string> folders = {Installed("scenes", PHRENIC_SCENES_DIR)};
   if (!data_dir.empty()) folders.push_back(data_dir + "/scenes");
   const session::Models models(session::SceneCatalogue(folders), data_dir, 1);
-  const absl::StatusOr<v1::Scene> scene = models.Resolve(*source);
+  const absl::StatusOr<v1::Scene> scene = models.Resolve(source);
   if (!scene.ok()) return scene.status();
   const MeshSource meshes = session::MakeMeshSource(data_dir, {}, session::MeshCache(session::DefaultCacheFolder()));
   absl::StatusOr<Mesh> right = ReadLung(*scene, v1::SIDE_RIGHT, meshes), left = right;

@@ -70,7 +70,7 @@ json RegionsJson(const std::vector<fit::RegionError>& regions) {
   return list;
 }
 
-void PrintParameters(const fit::MotionFit& fit) {
+void PrintFittedNumbers(const fit::MotionFit& fit) {
   Table table({"number", "mm", "standard error", "between people", "told by the data", "what"});
   for (const fit::FittedNumber& each : fit.parameters) {
     table.Add({each.name, Mm(each.value), Mm(each.standard_error), Mm(each.spread), each.determined ? "yes" : "HARDLY",
@@ -207,7 +207,7 @@ json FitJson(const fit::MotionFit& fit, const fit::FitOptions& options) {
 
 void PrintFit(const fit::MotionFit& fit, const fit::FitOptions& options) {
   PrintRegistration(fit.registered);
-  PrintParameters(fit);
+  PrintFittedNumbers(fit);
   PrintStrongestCorrelation(fit);
   std::cout << absl::StrFormat("descent of the base %s mm; the lungs gain %.2f l\n\n", Mm(fit.descent),
                                1000 * fit.volume);

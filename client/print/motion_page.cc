@@ -48,10 +48,10 @@ std::string DrawAxes(const PlotAxes& axes, const char* across, const char* up) {
   absl::StrAppendFormat(&svg, "<path d='M%d %d V%.1f H%.1f' fill=none stroke=#8a929c />", kLeft, kTop, bottom, right);
   const double dx = TickStep(axes.x1 - axes.x0), dy = TickStep(axes.y1 - axes.y0);
   for (double x = std::ceil(axes.x0 / dx) * dx; x <= axes.x1; x += dx) {
-    absl::StrAppendFormat(&svg, "<text x=%.1f y=%.1f text-anchor=middle>%g</text>", axes.X(x), bottom + 14, x);
+    absl::StrAppendFormat(&svg, "<text x=%.1f y=%.1f text-anchor=middle>%g</text>", axes.X(x), bottom + 14, x + 0.0);
   }
   for (double y = std::ceil(axes.y0 / dy) * dy; y <= axes.y1; y += dy) {
-    absl::StrAppendFormat(&svg, "<text x=%d y=%.1f text-anchor=end>%g</text>", kLeft - 4, axes.Y(y) + 4, y);
+    absl::StrAppendFormat(&svg, "<text x=%d y=%.1f text-anchor=end>%g</text>", kLeft - 4, axes.Y(y) + 4, y + 0.0);
   }
   absl::StrAppendFormat(&svg, "<text x=%.1f y=%d text-anchor=middle>%s</text>", (kLeft + right) / 2, kHeight - 6,
                         across);

@@ -5,6 +5,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "server/fit/read_landmarks.h"
 
 namespace phrenic::fit {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlopt.hpp>
-#include <numeric>
+#include <stdexcept>
 
 #include "absl/strings/str_format.h"
 #include "server/fit/sides.h"
@@ -85,7 +85,7 @@ std::vector<double> SearchLeast(Objective& objective) {
   double least = 0;
   try {
     search.optimize(v, least);
-  } catch (const nlopt::roundoff_limited&) {  // v is the best point so far
+  } catch (const std::runtime_error&) {  // rounding ends the search; v is the best point so far
   }
   return v;
 }

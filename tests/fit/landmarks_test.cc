@@ -1,7 +1,7 @@
-#include "server/fit/landmarks.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "server/fit/read_landmarks.h"
 
 namespace phrenic::fit {
 namespace {

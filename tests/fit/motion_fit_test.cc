@@ -97,6 +97,21 @@ TEST_F(SyntheticFit, FindsTheAmplitudesThatMadeTheMotion) {
   EXPECT_NEAR(fit->volume, made->VolumeResponses().dot(amplitudes) / 1000, 1e-5);
 }
 
+TEST(Assimilation, PassesThroughFewPointsAndIsLinear) {
+  const auto tissue = LungTissue::Make(GeneratedLungs()[kRight].surface(), {0.014, 0.3, 5, 0});
+  ASSERT_TRUE(tissue.ok()) << tissue.status();
+  const Points points = PointsInside(kRight, 3), vectors = 0.002 * Points::Random(3, 3);
+  const auto strong = tissue->SolveThrough(points, vectors, 1000), weak = tissue->SolveThrough(points, vectors, 0.001),
+             twice = tissue->SolveThrough(points, 2 * vectors, 1000);
+  ASSERT_TRUE(strong.ok() && weak.ok() && twice.ok());
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_LT((tissue->DisplacementAt(*strong, points.col(i)) - vectors.col(i)).norm(), 2e-5);
+    EXPECT_GT((tissue->DisplacementAt(*weak, points.col(i)) - vectors.col(i)).norm(), 5e-4);
+  }
+  EXPECT_LT((*twice - 2 * *strong).norm(), 1e-9 * strong->norm());
+  EXPECT_FALSE(tissue->SolveThrough(points, Points::Constant(3, 3, std::nan("")), 1).ok());
+}
+
 TEST(OneNumber, OfVolumeAndOfDescentAreTheSameMotion) {
   const auto registered = RegisterLungs(GeneratedLungs(), SyntheticPerson().exhale);
   const auto person = Person::Make(GeneratedLungs(), *registered, BreathAmplitudes(8), {});

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "server/fit/landmarks.h"
+#include "server/fit/read_landmarks.h"
 #include "server/fit/sides.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
