@@ -23,6 +23,8 @@ CommandFunction SetUpRun(CLI::App& command);
 CommandFunction SetUpReplay(CLI::App& command);
 // physiology.cc: CheckPhysiology, in this process or on a server. With --check, kMissed if a value is out of its range.
 CommandFunction SetUpPhysiology(CLI::App& command);
+// lungs.cc: physiology/lung_breath.h on a scene compiled in this process; no service.
+CommandFunction SetUpLungs(CLI::App& command);
 // calibrate.cc: calibrate/ on a scene compiled in this process; no service. kMissed if the measures are not reached.
 CommandFunction SetUpCalibrate(CLI::App& command);
 // fit.cc: fit/ on the lungs of a scene and files of landmarks; no service. Files are written whole or not at all.

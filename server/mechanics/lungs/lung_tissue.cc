@@ -12,8 +12,8 @@
 namespace phrenic {
 namespace {
 
-constexpr double kOutside = 1e-3;         // stiffness of what is outside the lung, relative to its tissue
-constexpr double kRegularisation = 1e-9;  // of the mean of the diagonal
+constexpr double kOutsideStiffness = 1e-3;  // stiffness of what is outside the lung, relative to its tissue
+constexpr double kRegularisation = 1e-9;    // of the mean of the diagonal
 
 using Entries = std::vector<Eigen::Triplet<double>>;
 
@@ -110,7 +110,8 @@ Eigen::Matrix3d LungTissue::SpringOf(Eigen::Index point) const {
 LungTissue::Matrix LungTissue::Stiffness(const std::vector<bool>& free) const {
   const BrickElement element(elasticity_.edge, elasticity_.poisson);
   std::vector<BrickMatrix> bricks;
-  for (const BrickFractions& fractions : grid_.fractions()) bricks.push_back(element.Stiffness(fractions, kOutside));
+  for (const BrickFractions& fractions : grid_.fractions())
+    bricks.push_back(element.Stiffness(fractions, kOutsideStiffness));
   for (size_t p = 0; p < places_.size(); ++p) {
     if (!free[p]) AddSpring(places_[p].local, SpringOf(static_cast<Eigen::Index>(p)), bricks[places_[p].brick]);
   }
@@ -149,15 +150,17 @@ Points LungTissue::SolveWith(const LayeredCholesky& factors, const ConstPoints& 
   return nodes.reshaped(3, grid_.nodes().cols());
 }
 
-Points LungTissue::SolveVectors(const ConstPoints& displacement) const { return SolveWith(*factors_, displacement); }
+Points LungTissue::Solve(const Eigen::VectorXd& g) const { return SolveVectors(normals_ * g.asDiagonal()); }
 
-Points LungTissue::Solve(const Eigen::VectorXd& g) const {
-  const Eigen::VectorXd held = g.array().isNaN().select(0, g);
-  const Points displacement = normals_ * held.asDiagonal();
-  if (!g.hasNaN()) return SolveWith(*factors_, displacement);
+Points LungTissue::SolveVectors(const ConstPoints& displacement) const {
+  if (!displacement.hasNaN()) return SolveWith(*factors_, displacement);
   std::vector<bool> free;
-  for (const double value : g) free.push_back(std::isnan(value));
-  return SolveWith(*Factorise(free, {}), displacement);  // positive definite as the first one was
+  Points held = displacement;
+  for (auto at : held.colwise()) {
+    free.push_back(at.hasNaN());
+    if (free.back()) at.setZero();
+  }
+  return SolveWith(*Factorise(free, {}), held);  // positive definite as the first one was
 }
 
 absl::StatusOr<Points> LungTissue::SolveThrough(const ConstPoints& points, const ConstPoints& vectors,

@@ -48,6 +48,7 @@ class LungTissue {
   const Points& normals() const { return normals_; }
   const Eigen::VectorXd& areas() const { return areas_; }
 
+  const Mesh& surface() const { return surface_; }
   const BrickGrid& grid() const { return grid_; }
   const Eigen::AlignedBox3d& box() const { return box_; }  // of the surface [m]
   // True if the point is inside the surface. O(triangles).
@@ -56,8 +57,8 @@ class LungTissue {
   // Returns the displacement of the grid's nodes (3 x nodes) [m] for the normal displacement g of each boundary point
   // [m]. The surface is free where g is NaN, which costs a factorisation; 4 ms without.
   Points Solve(const Eigen::VectorXd& g) const;
-  // The same for displacements of the boundary points (3 x points) [m], whose part along the surface acts through the
-  // tangential stiffness.
+  // The same for displacements of the surroundings at the boundary points (3 x points) [m], whose part along the
+  // surface acts through the tangential stiffness. The surface is free at columns with NaN.
   Points SolveVectors(const ConstPoints& displacement) const;
   // Returns the displacement u of the nodes [m] that minimises E + w/2 sum |u(x_i) - r_i|^2 for surroundings at rest:
   // the smallest deformation through the vectors r (3 x n) [m] at the points x (3 x n) [m], per modulus; `weight` w
