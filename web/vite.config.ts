@@ -1,3 +1,5 @@
+import { readFileSync, writeFileSync } from "node:fs";
+import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 import { defineConfig, type Plugin } from "vite";
 
 const policy = [
@@ -21,8 +23,27 @@ function contentSecurityPolicy(): Plugin {
   };
 }
 
+// Writes each script, style and page compressed beside itself; phrenicd serves what the browser accepts.
+function compressed(): Plugin {
+  return {
+    name: "compressed",
+    apply: "build",
+    enforce: "post",
+    writeBundle({ dir }, bundle) {
+      for (const name of Object.keys(bundle).filter((each) => /\.(js|css|html)$/.test(each))) {
+        const bytes = readFileSync(`${dir}/${name}`);
+        writeFileSync(
+          `${dir}/${name}.br`,
+          brotliCompressSync(bytes, { params: { [constants.BROTLI_PARAM_QUALITY]: constants.BROTLI_MAX_QUALITY } }),
+        );
+        writeFileSync(`${dir}/${name}.gz`, gzipSync(bytes, { level: 9 }));
+      }
+    },
+  };
+}
+
 export default defineConfig({
-  plugins: [contentSecurityPolicy()],
+  plugins: [contentSecurityPolicy(), compressed()],
   build: { target: "es2022", modulePreload: { polyfill: false }, assetsInlineLimit: 0 },
   // `npx vite` serves the sources and forwards calls to a phrenicd at this address.
   server: { proxy: { "^/(phrenic|grpc)\\.": process.env.PHRENIC_WEB ?? "http://127.0.0.1:8080" } },

@@ -1,9 +1,11 @@
+import { resolve } from "node:path";
 import { defineConfig } from "vitest/config";
 
 // All tests in tests/e2e need phrenicd and Chromium; `--mode screenshot` takes the README's screenshots.
 export default defineConfig(({ mode }) => ({
   test: {
     dir: "../tests/e2e",
+    env: { PHRENIC_CACHE: resolve(import.meta.dirname, "../build/meshes") },
     include: [mode === "screenshot" ? "screenshot.ts" : "**/*.test.ts"],
     testTimeout: 120_000,
     hookTimeout: 120_000,

@@ -99,7 +99,8 @@ absl::Status ReadCalibrateScene(const Context& context, const CalibrateOptions& 
   if (!source.ok()) return source.status();
   std::vector<std::string> folders = {Installed("scenes", PHRENIC_SCENES_DIR)};
   if (!options.data_dir.empty()) folders.push_back(options.data_dir + "/scenes");
-  session::Models models(session::SceneCatalogue(folders), options.data_dir, 1);
+  session::Models models(session::SceneCatalogue(folders), options.data_dir, 1, nullptr, {},
+                         session::MeshCache(session::DefaultCacheFolder()));
   const absl::StatusOr<v1::Scene> scene = models.Resolve(*source);
   if (!scene.ok()) return scene.status();
   const absl::StatusOr<v1::Parameters> preset = FindPreset(*scene, options.preset);

@@ -65,6 +65,7 @@ void AddAddresses(CLI::App& app, Flags& flags) {
   group.Add("data", options.data_dir, "Folder of surface files, with your own scenes in its subfolder scenes/");
   group.Add("scenes", options.scenes_dir, "Folder of the shipped scenes");
   group.Add("spool", options.spool_dir, "Folder for temporary files of exports and uploads");
+  group.Add("cache", options.cache_dir, "Folder in which generated meshes are kept for the next start; none: not kept");
   group.Add("store", options.store_dir,
             "Folder in which sessions are saved, to resume them after a restart; none: not saved");
   group.Add("web-root", options.web_root, "Folder of the built viewer");

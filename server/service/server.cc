@@ -111,7 +111,7 @@ struct Server::Parts {
         audit(std::move(opened.audit)),
         uploads(options.limits, options.spool_dir),
         models(session::SceneCatalogue(SceneFolders(options)), options.data_dir, options.limits.models, &uploads,
-               options.limits),
+               options.limits, session::MeshCache(options.cache_dir)),
         table(models, clock, options.limits, store.get(), cluster.get()),
         page_tokens(cluster == nullptr ? PageTokens() : PageTokens("cluster")),
         router(cluster == nullptr ? nullptr

@@ -13,6 +13,7 @@
 #include "server/schema/places.h"
 #include "server/service/net/tls.h"
 #include "server/session/limits.h"
+#include "server/session/mesh_cache.h"
 
 namespace phrenic::service {
 
@@ -24,6 +25,7 @@ struct ServerOptions {
   std::string scenes_dir = Installed("scenes", PHRENIC_SCENES_DIR);
   std::string web_root = Installed("web", PHRENIC_WEB_DIR);
   std::string spool_dir = record::DefaultSpoolFolder();       // unnamed temporary files of exports and uploads
+  std::string cache_dir = session::DefaultCacheFolder();      // generated meshes, for the next start; none: not kept
   std::string store_dir;                                      // sessions are saved here and restored; empty: not saved
   std::function<void(const std::string& session)> restoring;  // called before each session of the store is restored
   std::vector<std::string> allowed_origins;  // "https://host:port": may call the server and frame the viewer

@@ -61,10 +61,14 @@ const v1::SurfaceFile* FileOf(const v1::Body& body) {
   return body.has_filling() && body.filling().has_file() ? &body.filling().file() : nullptr;
 }
 
-MeshSource MakeMeshSource(std::string data_dir, std::vector<Uploads::Held> uploads) {
-  return [data_dir = std::move(data_dir), uploads = std::move(uploads)](const v1::Body& body) -> absl::StatusOr<Mesh> {
-    if (body.has_generated())
-      return anatomy::Generate(body.anatomy(), body.generated().resolution_mm(), body.generated().sheet());
+MeshSource MakeMeshSource(std::string data_dir, std::vector<Uploads::Held> uploads, MeshCache cache) {
+  return [data_dir = std::move(data_dir), uploads = std::move(uploads),
+          cache = std::move(cache)](const v1::Body& body) -> absl::StatusOr<Mesh> {
+    if (body.has_generated()) {
+      return cache.Get(body.anatomy(), body.generated(), [&body] {
+        return anatomy::Generate(body.anatomy(), body.generated().resolution_mm(), body.generated().sheet());
+      });
+    }
     if (IsUpload(body.file().path())) return ReadUpload(uploads, body.file());
     const absl::StatusOr<std::string> path = ResolveBelow(data_dir, body.file().path());
     if (!path.ok()) return path.status();

@@ -7,6 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "server/mechanics/compile/compile.h"
+#include "server/session/mesh_cache.h"
 #include "server/session/uploads.h"
 
 namespace phrenic::session {
@@ -23,8 +24,8 @@ bool IsUpload(const std::string& path);
 
 // Returns a thread-safe source, for which the path "upload:SHA256" names one of `uploads`. NOT_FOUND if none of them
 // has that hash. Meshes are in metres. It holds `uploads` as long as it exists, and returns the errors of ResolveBelow,
-// meshio and anatomy::Generate.
-MeshSource MakeMeshSource(std::string data_dir, std::vector<Uploads::Held> uploads = {});
+// meshio and anatomy::Generate. Generated parts are kept in `cache`.
+MeshSource MakeMeshSource(std::string data_dir, std::vector<Uploads::Held> uploads = {}, MeshCache cache = MeshCache());
 
 // Returns the sizes of generated parts by their resolution, roughly, and an estimate for files by their
 // length. A file counts as one vertex per 500 bytes, those of the most verbose format, so that no file within the

@@ -37,12 +37,14 @@ bool IsCancelled(const Requester& by) { return by.cancelled != nullptr && by.can
 
 }  // namespace
 
-Models::Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Uploads* uploads, const Limits& limits)
+Models::Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Uploads* uploads, const Limits& limits,
+               MeshCache cache)
     : catalogue_(std::move(catalogue)),
       data_dir_(std::move(data_dir)),
       uploads_(uploads),
       capacity_(static_cast<std::size_t>(std::max(1, capacity))),
       limits_(limits),
+      cache_(std::move(cache)),
       slots_(kSmallAtATime, kLargeAtATime) {}
 
 absl::StatusOr<Models::Surfaces> Models::HoldSurfaces(const v1::Scene& scene, const Requester& by) const {
@@ -138,14 +140,14 @@ absl::StatusOr<std::shared_ptr<const Model>> Models::CompileNow(const v1::Scene&
   const auto size = EstimateSize(scene, options.size_of, options.limits);
   if (!size.ok()) return size.status();
   job.elements = size->elements;
-  if (by.trusted) return phrenic::Compile(scene, MakeMeshSource(data_dir_, surfaces), options);
+  if (by.trusted) return phrenic::Compile(scene, MakeMeshSource(data_dir_, surfaces, cache_), options);
   options.longest = limits_.compile_seconds;
   options.cancelled = [&by, &job] { return job.others == 0 && IsCancelled(by); };
   const bool small = size->vertices <= kSmallScene && size->elements <= kSmallScene;
   const auto lane = small ? CompileSlots::Lane::kSmall : CompileSlots::Lane::kLarge;
   const auto slot = slots_.Take(by.share, lane, options.cancelled);
   if (!slot.ok()) return slot.status();
-  return phrenic::Compile(scene, MakeMeshSource(data_dir_, surfaces), options);
+  return phrenic::Compile(scene, MakeMeshSource(data_dir_, surfaces, cache_), options);
 }
 
 absl::StatusOr<std::shared_ptr<const Model>> Models::Find(const v1::Scene& scene, const Surfaces& surfaces,

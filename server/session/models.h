@@ -18,6 +18,7 @@
 #include "phrenic/v1/session.pb.h"
 #include "server/mechanics/compile/compile.h"
 #include "server/session/compile_slots.h"
+#include "server/session/mesh_cache.h"
 #include "server/session/requester.h"
 #include "server/session/scene_catalogue.h"
 #include "server/session/uploads.h"
@@ -38,9 +39,9 @@ class Models {
  public:
   // Keeps the `capacity` models that were used last, as long as they have limits.elements together. `uploads` outlives
   // it; null: scenes cannot name uploaded files. The latest model is kept in any case, and a `capacity` below 1 counts
-  // as 1. Surface files lie below `data_dir`; empty: scenes read no files.
+  // as 1. Surface files lie below `data_dir`; empty: scenes read no files. Generated meshes are kept in `cache`.
   Models(SceneCatalogue catalogue, std::string data_dir, int capacity, Uploads* uploads = nullptr,
-         const Limits& limits = {});
+         const Limits& limits = {}, MeshCache cache = MeshCache());
 
   const SceneCatalogue& catalogue() const { return catalogue_; }
   // Returns the scene that `source` names or holds, at its resolution; INVALID_ARGUMENT "source: ..." if it is empty.
@@ -95,6 +96,7 @@ class Models {
   Uploads* const uploads_;      // null: no uploads
   const std::size_t capacity_;
   const Limits limits_;
+  const MeshCache cache_;
   CompileSlots slots_;
   absl::Mutex mutex_;
   std::list<Entry> entries_ ABSL_GUARDED_BY(mutex_);                          // last used first

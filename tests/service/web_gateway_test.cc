@@ -226,6 +226,35 @@ TEST_F(WebGatewayTest, FilesHaveTypeCachingAndPolicy) {
   EXPECT_TRUE(again.body().empty());
 }
 
+TEST_F(WebGatewayTest, AFileIsSentCompressedToThoseWhoAcceptIt) {
+  const fs::path script = root_ / "site" / "assets" / "main-1a2b.js";
+  std::ofstream(script.string() + ".br") << "as brotli";
+  std::ofstream(script.string() + ".gz") << "as gzip";
+  const auto get = [&](const std::string& accepted) {
+    return Get("/assets/main-1a2b.js", accepted.empty() ? "" : "Accept-Encoding: " + accepted + "\r\n");
+  };
+  const std::pair<const char*, const char*> cases[] = {{"gzip, deflate, br", "br"},
+                                                       {"br;q=1.0, gzip;q=0.8", "br"},
+                                                       {"gzip", "gzip"},
+                                                       {"br;q=0, gzip", "gzip"},
+                                                       {"identity", ""},
+                                                       {"", ""},
+                                                       {"brotli", ""},
+                                                       {";,;q=,br;q=0", ""}};
+  for (const auto& [accepted, encoding] : cases) {
+    const auto response = get(accepted);
+    EXPECT_EQ(response[http::field::content_encoding], encoding) << accepted;
+    EXPECT_EQ(response[http::field::vary], "Accept-Encoding") << accepted;
+    EXPECT_EQ(response[http::field::content_type], "text/javascript; charset=utf-8") << accepted;
+    EXPECT_EQ(response.body() == "export {};", *encoding == '\0') << accepted;
+  }
+  EXPECT_NE(get("br")[http::field::etag], get("gzip")[http::field::etag]);
+  // What an earlier build left is not sent.
+  fs::last_write_time(script.string() + ".br", fs::last_write_time(script) - std::chrono::hours(1));
+  EXPECT_EQ(get("br")[http::field::content_encoding], "");
+  EXPECT_EQ(get("br").body(), "export {};");
+}
+
 class FramedGatewayTest : public WebGatewayTest {
  protected:
   FramedGatewayTest() { options_.allowed_origins = {"https://course.example"}; }

@@ -136,7 +136,7 @@ TEST(Limits, AreNotLoweredByAMotionThatDivergesAtEveryStep) {
 
 v1::CreateStudyRequest MapRequest() {
   v1::CreateStudyRequest request;
-  request.mutable_stability()->set_seconds(4);
+  request.mutable_stability()->set_seconds(1.5);
   request.mutable_stability()->set_steps(2);
   request.mutable_stability()->set_stiffest(1e6);
   request.mutable_stability()->set_leave_out_extremes(true);

@@ -7,8 +7,11 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 
 namespace phrenic::service {
 namespace {
@@ -59,6 +62,34 @@ bool IsBelow(const fs::path& root, const fs::path& path) {
   return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
 }
 
+// True if a header "gzip, br;q=0.5" allows the coding.
+bool Accepts(std::string_view header, std::string_view coding) {
+  for (const absl::string_view each : absl::StrSplit(absl::string_view(header.data(), header.size()), ',')) {
+    const std::pair<absl::string_view, absl::string_view> parts = absl::StrSplit(each, absl::MaxSplits(';', 1));
+    if (absl::StripAsciiWhitespace(parts.first) != absl::string_view(coding.data(), coding.size())) continue;
+    double quality = 1;
+    absl::string_view weight = absl::StripAsciiWhitespace(parts.second);
+    return !absl::ConsumePrefix(&weight, "q=") || !absl::SimpleAtod(weight, &quality) || quality > 0;
+  }
+  return false;
+}
+
+// Makes `file` its compressed form, if the build wrote one and the header allows it.
+void Compress(std::string_view accept_encoding, StaticFile& file) {
+  const fs::path plain = file.path;
+  for (const auto& [coding, ending] : {std::pair("br", ".br"), {"gzip", ".gz"}}) {
+    std::error_code error;
+    const fs::path path = absl::StrCat(plain.string(), ending);
+    // One that is older is left over from another build.
+    if (!fs::is_regular_file(path, error) || fs::last_write_time(path, error) < fs::last_write_time(plain, error))
+      continue;
+    file.varies = true;
+    if (!file.encoding.empty() || !Accepts(accept_encoding, coding)) continue;
+    file.path = path.string();
+    file.encoding = coding;
+  }
+}
+
 std::string ETagOf(const fs::path& path) {
   std::error_code ignored;
   return absl::StrFormat("\"%x-%x\"", fs::file_size(path, ignored),
@@ -74,7 +105,8 @@ std::string ContentTypeOf(std::string_view path) {
   return "application/octet-stream";
 }
 
-absl::StatusOr<StaticFile> FindStaticFile(const std::string& root, std::string_view target) {
+absl::StatusOr<StaticFile> FindStaticFile(const std::string& root, std::string_view target,
+                                          std::string_view accept_encoding) {
   target = target.substr(0, target.find_first_of("?#"));
   if (target.empty() || target[0] != '/') return absl::InvalidArgumentError("the address does not begin with /");
   const absl::StatusOr<std::string> decoded = PercentDecode(target.substr(1));
@@ -88,10 +120,13 @@ absl::StatusOr<StaticFile> FindStaticFile(const std::string& root, std::string_v
   const fs::path path = fs::canonical(folder / relative, error);
   if (error || !IsBelow(folder, path) || !fs::is_regular_file(path, error)) return missing;
   const bool hashed = absl::StartsWith(*decoded, "assets/");
-  return StaticFile{.path = path.string(),
-                    .content_type = ContentTypeOf(path.string()),
-                    .etag = ETagOf(path),
-                    .cache_control = hashed ? "public, max-age=31536000, immutable" : "no-cache"};
+  StaticFile file;
+  file.path = path.string();
+  file.content_type = ContentTypeOf(file.path);
+  file.cache_control = hashed ? "public, max-age=31536000, immutable" : "no-cache";
+  Compress(accept_encoding, file);
+  file.etag = ETagOf(file.path);
+  return file;
 }
 
 }  // namespace phrenic::service

@@ -236,7 +236,7 @@ void WebConnection::HandleGet(const Request& request) {
     const auto page = settings_.page(View(request.target()), CredentialsOf(request));
     if (page.has_value()) return SendPage(request, *page);
   }
-  const auto file = FindStaticFile(settings_.root, View(request.target()));
+  const auto file = FindStaticFile(settings_.root, View(request.target()), View(request[http::field::accept_encoding]));
   if (!file.ok()) {
     const auto status = absl::IsNotFound(file.status()) ? http::status::not_found : http::status::bad_request;
     return SendError(status, std::string(file.status().message()));

@@ -49,6 +49,8 @@ void SetFileHeaders(const StaticFile& file, const std::vector<std::string>& fram
   response.set(http::field::content_type, file.content_type);
   response.set(http::field::etag, file.etag);
   response.set(http::field::cache_control, file.cache_control);
+  if (!file.encoding.empty()) response.set(http::field::content_encoding, file.encoding);
+  if (file.varies) response.set(http::field::vary, "Accept-Encoding");
   response.set("Content-Security-Policy",
                absl::StrCat(kPolicy, framers.empty() ? "'none'" : absl::StrJoin(framers, " ")));
   response.set("Referrer-Policy", "no-referrer");

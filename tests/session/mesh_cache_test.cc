@@ -1,0 +1,130 @@
+// A kept mesh has the bits of a generated one; damage, other writers and a full folder cost time, never a wrong mesh.
+#include "server/session/mesh_cache.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <thread>
+
+#include "server/anatomy/anatomy.h"
+#include "server/schema/file_bytes.h"
+
+namespace phrenic::session {
+namespace {
+
+namespace fs = std::filesystem;
+
+Mesh SmallMesh(double size) {
+  Mesh mesh;
+  mesh.vertices = size * Points::Identity(3, 3);
+  mesh.triangles = Triangles(3, 1);
+  mesh.triangles << 0, 1, 2;
+  mesh.regions["rim"] = {0, 2};
+  return mesh;
+}
+
+class KeptMeshes : public testing::Test {
+ protected:
+  KeptMeshes() { fs::remove_all(folder_); }
+  ~KeptMeshes() override { fs::remove_all(folder_); }
+
+  // Returns the mesh of rib `number`, generated as a triangle of that size; counts how often it was generated.
+  Mesh Get(const MeshCache& cache, int number) {
+    v1::Anatomy part;
+    part.set_number(number);
+    return *cache.Get(part, {}, [&]() -> absl::StatusOr<Mesh> {
+      ++generated_;
+      return SmallMesh(number);
+    });
+  }
+  std::vector<fs::path> Files() const {
+    std::vector<fs::path> files;
+    for (const auto& each : fs::directory_iterator(folder_)) files.push_back(each.path());
+    return files;
+  }
+
+  const std::string folder_ = testing::TempDir() + "phrenic_kept_meshes_" +
+                              testing::UnitTest::GetInstance()->current_test_info()->name() + std::to_string(getpid());
+  std::atomic<int> generated_ = 0;
+};
+
+TEST_F(KeptMeshes, AreReadByTheNextProgram) {
+  const Mesh first = Get(MeshCache(folder_), 3), second = Get(MeshCache(folder_), 3),
+             other = Get(MeshCache(folder_), 4);
+  EXPECT_EQ(generated_, 2);
+  EXPECT_EQ(first.vertices, second.vertices);
+  EXPECT_EQ(first.triangles, second.triangles);
+  EXPECT_EQ(first.regions, second.regions);
+  EXPECT_NE(first.vertices, other.vertices);
+  EXPECT_EQ(Files().size(), 2);
+}
+
+TEST_F(KeptMeshes, HaveTheBitsOfAGeneratedPart) {
+  v1::Anatomy part;
+  part.set_structure(v1::STRUCTURE_DIAPHRAGM);
+  const Mesh mesh = *anatomy::Generate(part, 12);
+  const auto same = UnpackMesh(PackMesh(mesh));
+  ASSERT_TRUE(same.has_value());
+  EXPECT_EQ(same->vertices, mesh.vertices);
+  EXPECT_EQ(same->triangles, mesh.triangles);
+  EXPECT_EQ(same->regions, mesh.regions);
+}
+
+TEST_F(KeptMeshes, AreGeneratedAgainIfTheirFileIsDamaged) {
+  const MeshCache cache(folder_);
+  const Mesh mesh = Get(cache, 3);
+  const fs::path file = Files().front();
+  const std::string whole = *ReadBytes(file);
+  std::mt19937 random(1);
+  for (int i = 0; i < 60; ++i) {
+    std::string damaged = whole;
+    if (i % 3 == 0) damaged.resize(random() % whole.size());
+    if (!damaged.empty()) damaged[random() % damaged.size()] ^= static_cast<char>(1 + random() % 255);
+    std::ofstream(file, std::ios::binary) << damaged;
+    EXPECT_FALSE(UnpackMesh(damaged).has_value());
+    EXPECT_EQ(Get(cache, 3).vertices, mesh.vertices);
+  }
+  EXPECT_EQ(generated_, 61);
+  EXPECT_EQ(*ReadBytes(file), whole);
+}
+
+TEST_F(KeptMeshes, OfManyWritersAreWhole) {
+  std::vector<std::thread> writers;
+  for (int i = 0; i < 4; ++i) {
+    writers.emplace_back([&] {
+      for (int k = 0; k < 50; ++k) EXPECT_EQ(Get(MeshCache(folder_), k % 7).vertices, SmallMesh(k % 7).vertices);
+    });
+  }
+  for (std::thread& writer : writers) writer.join();
+  EXPECT_EQ(Files().size(), 7);
+}
+
+TEST_F(KeptMeshes, TakeNoMoreRoomThanTheyMay) {
+  const auto size = static_cast<std::int64_t>(PackMesh(SmallMesh(1)).size());
+  const MeshCache cache(folder_, 3 * size);
+  for (int k = 0; k < 20; ++k) Get(cache, k);
+  EXPECT_EQ(Files().size(), 3);
+  Get(cache, 19);
+  EXPECT_EQ(generated_, 20) << "the latest is kept";
+}
+
+TEST_F(KeptMeshes, OfAFolderThatCannotBeWrittenAreGenerated) {
+  for (const std::string& folder : {std::string(), std::string("none"), std::string("/proc/nothing")}) {
+    EXPECT_EQ(Get(MeshCache(folder), 5).vertices, SmallMesh(5).vertices);
+  }
+  EXPECT_EQ(generated_, 3);
+}
+
+TEST_F(KeptMeshes, AreNotMadeOfErrors) {
+  const MeshCache cache(folder_);
+  v1::Anatomy part;
+  const auto none = cache.Get(part, {}, []() -> absl::StatusOr<Mesh> { return absl::InvalidArgumentError("no"); });
+  EXPECT_EQ(none.status().message(), "no");
+  EXPECT_FALSE(fs::exists(folder_));
+}
+
+}  // namespace
+}  // namespace phrenic::session
