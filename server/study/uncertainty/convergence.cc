@@ -54,7 +54,7 @@ void CountConvergenceRun(const RunOutputs& run, v1::ConvergenceTable& table) {
 }
 
 // Sets the order of the last time step from the last three. Requires: the runs of the steps come first.
-void SetStepOrders(const Runs& runs, int halvings, v1::ConvergenceTable& table) {
+void SetStepOrders(const RunSet& runs, int halvings, v1::ConvergenceTable& table) {
   if (halvings < 2) return;
   const auto last = static_cast<size_t>(halvings);
   const size_t outputs = runs.each.front().values.size();

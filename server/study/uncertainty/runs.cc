@@ -44,7 +44,7 @@ class RunQueue {
   }
 
   // Requires: no thread works any more.
-  absl::StatusOr<Runs> Take() {
+  absl::StatusOr<RunSet> Take() {
     const absl::MutexLock lock(&mutex_);
     if (!status_.ok()) return status_;
     return std::move(runs_);
@@ -58,7 +58,7 @@ class RunQueue {
   std::atomic<size_t> next_ = 0;
   std::atomic<bool> cancelled_ = false;
   absl::Mutex mutex_;
-  Runs runs_ ABSL_GUARDED_BY(mutex_);
+  RunSet runs_ ABSL_GUARDED_BY(mutex_);
   size_t done_ ABSL_GUARDED_BY(mutex_) = 0;
   absl::Status status_ ABSL_GUARDED_BY(mutex_);
 };
@@ -70,25 +70,25 @@ size_t ThreadsFor(int wanted, size_t runs) {
 
 }  // namespace
 
-std::vector<double> Runs::ValuesOf(size_t output) const {
+std::vector<double> RunSet::ValuesOf(size_t output) const {
   std::vector<double> values;
   values.reserve(each.size());
   for (const RunOutputs& run : each) values.push_back(run.values[output]);
   return values;
 }
 
-long Runs::CountFailed() const {
+long RunSet::CountFailed() const {
   return std::count_if(each.begin(), each.end(), [](const RunOutputs& run) { return !run.problem.empty(); });
 }
 
-std::string Runs::FirstProblem() const {
+std::string RunSet::FirstProblem() const {
   const auto failed =
       std::find_if(each.begin(), each.end(), [](const RunOutputs& run) { return !run.problem.empty(); });
   return failed == each.end() ? "" : failed->problem;
 }
 
-absl::StatusOr<Runs> RunAll(const Outputs& outputs, std::span<const v1::Parameters> parameters, int threads,
-                            const std::string& doing, const Progress& progress) {
+absl::StatusOr<RunSet> RunAll(const Outputs& outputs, std::span<const v1::Parameters> parameters, int threads,
+                              const std::string& doing, const Progress& progress) {
   RunQueue queue(outputs, parameters);
   bool cancelled = false;
   {
@@ -107,8 +107,9 @@ absl::StatusOr<Runs> RunAll(const Outputs& outputs, std::span<const v1::Paramete
   return queue.Take();
 }
 
-absl::StatusOr<Runs> RunAt(const Outputs& outputs, const std::vector<Input>& inputs, const v1::Parameters& nominal,
-                           const UnitPoints& points, int threads, const std::string& doing, const Progress& progress) {
+absl::StatusOr<RunSet> RunAt(const Outputs& outputs, const std::vector<Input>& inputs, const v1::Parameters& nominal,
+                             const UnitPoints& points, int threads, const std::string& doing,
+                             const Progress& progress) {
   std::vector<v1::Parameters> parameters(static_cast<size_t>(points.rows()), nominal);
   for (size_t j = 0; j < parameters.size(); ++j) {
     const auto row = points.row(static_cast<Eigen::Index>(j));

@@ -15,7 +15,7 @@ namespace phrenic::study {
 inline constexpr long kMostRuns = 1'000'000;  // of one study
 
 // What several runs gave, in the order of their parameters.
-struct Runs {
+struct RunSet {
   std::vector<RunOutputs> each;
   // Returns the values of one output, one a run.
   std::vector<double> ValuesOf(size_t output) const;
@@ -26,12 +26,12 @@ struct Runs {
 // Runs the scene with each of the parameters, every field set, on `threads` threads; 0: one a core. The number of
 // threads changes no bit of the result. `progress` is called on the caller's thread, with `doing` and the number of
 // runs. CANCELLED if it returns false, within a few steps of every run.
-absl::StatusOr<Runs> RunAll(const Outputs& outputs, std::span<const v1::Parameters> parameters, int threads,
-                            const std::string& doing, const Progress& progress);
+absl::StatusOr<RunSet> RunAll(const Outputs& outputs, std::span<const v1::Parameters> parameters, int threads,
+                              const std::string& doing, const Progress& progress);
 
 // The same with the inputs at each of the points and all else as in `nominal`.
-absl::StatusOr<Runs> RunAt(const Outputs& outputs, const std::vector<Input>& inputs, const v1::Parameters& nominal,
-                           const UnitPoints& points, int threads, const std::string& doing, const Progress& progress);
+absl::StatusOr<RunSet> RunAt(const Outputs& outputs, const std::vector<Input>& inputs, const v1::Parameters& nominal,
+                             const UnitPoints& points, int threads, const std::string& doing, const Progress& progress);
 
 }  // namespace phrenic::study
 

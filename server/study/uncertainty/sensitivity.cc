@@ -58,7 +58,7 @@ class Sensitivity {
         absl::StrFormat("samples: these are %.4g runs, more than %d", AllRuns(), kMostRuns));
   }
 
-  absl::StatusOr<Runs> RunPoints(const UnitPoints& points, const std::string& doing) {
+  absl::StatusOr<RunSet> RunPoints(const UnitPoints& points, const std::string& doing) {
     const double from = done_ / AllRuns();
     done_ += static_cast<double>(points.rows());
     auto runs = RunAt(outputs_, inputs_, subject_.parameters, points, study_.threads(), doing,

@@ -42,7 +42,7 @@ void AddBand(const Output& output, double nominal, std::vector<double> values, v
   sample.mutable_values()->Add(values.begin(), values.end());
 }
 
-void AddBandCurve(const Measure& measure, size_t index, const Runs& runs, v1::UncertaintyTable& table) {
+void AddBandCurve(const Measure& measure, size_t index, const RunSet& runs, v1::UncertaintyTable& table) {
   v1::BandCurve& curve = *table.add_curves();
   curve.set_measure(measure.name());
   curve.set_unit(measure.unit());

@@ -1,6 +1,6 @@
 // Runs one study of any kind.
-#ifndef PHRENIC_SERVER_STUDY_RUN_H_
-#define PHRENIC_SERVER_STUDY_RUN_H_
+#ifndef PHRENIC_SERVER_STUDY_QUEUE_RUN_H_
+#define PHRENIC_SERVER_STUDY_QUEUE_RUN_H_
 
 #include "phrenic/v1/study.pb.h"
 #include "server/study/context.h"
@@ -18,4 +18,4 @@ absl::StatusOr<v1::StudyResult> Run(v1::CreateStudyRequest request, const Compil
 
 }  // namespace phrenic::study
 
-#endif  // PHRENIC_SERVER_STUDY_RUN_H_
+#endif  // PHRENIC_SERVER_STUDY_QUEUE_RUN_H_

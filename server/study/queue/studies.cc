@@ -1,8 +1,8 @@
-#include "server/study/studies.h"
+#include "server/study/queue/studies.h"
 
 #include "absl/strings/str_cat.h"
 #include "phrenic/v1/saved.pb.h"
-#include "server/study/run.h"
+#include "server/study/queue/run.h"
 
 namespace phrenic::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "server/study/run.h"
+#include "server/study/queue/run.h"
 
 #include <chrono>
 #include <utility>
