@@ -10,10 +10,10 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
 #include "absl/time/clock.h"
 #include "client/campaign/worker.h"
+#include "client/cli/shell_word.h"
 
 namespace phrenic::client {
 namespace {
@@ -94,16 +94,12 @@ absl::StatusOr<std::string> RunShell(const std::string& command) {
   return absl::InternalError(absl::StrCat(command.substr(0, command.find(' ')), ": ", text));
 }
 
-std::string Quoted(const std::string& word) {
-  return absl::StrCat("'", absl::StrReplaceAll(word, {{"'", "'\\''"}}), "'");
-}
-
 std::string SlurmCommand(const Workers& workers, int shares, const std::string& log_folder) {
-  std::string work = Quoted(ThisProgram());
-  for (const std::string& argument : workers.arguments) absl::StrAppend(&work, " ", Quoted(argument));
+  std::string work = ShellWord(ThisProgram());
+  for (const std::string& argument : workers.arguments) absl::StrAppend(&work, " ", ShellWord(argument));
   absl::StrAppend(&work, " --share $SLURM_ARRAY_TASK_ID/", shares);
   return absl::StrCat("sbatch --parsable --job-name=phrenic --array=0-", shares - 1, "%", workers.concurrent,
-                      " --output=", Quoted(log_folder + "/slurm-%A-%a.log"), " --wrap ", Quoted(work));
+                      " --output=", ShellWord(log_folder + "/slurm-%A-%a.log"), " --wrap ", ShellWord(work));
 }
 
 }  // namespace

@@ -47,7 +47,8 @@ std::string Meaning(const FieldDescriptor& field) {
   std::string text = quantity->label().empty() ? absl::StrReplaceAll(field.name(), {{"_", " "}}) : quantity->label();
   absl::StrAppend(&text, ", ", schema::FormatRange(*quantity));
   if (field.is_repeated()) return absl::StrCat(text, ", comma-separated (none)");
-  return absl::StrCat(text, " (", schema::FormatNumber(quantity->default_value()), ")");
+  return absl::StrCat(text, " (", quantity->automatic() ? "automatic" : schema::FormatNumber(quantity->default_value()),
+                      ")");
 }
 
 void AddOption(CLI::App& command, const std::string& name, const FieldDescriptor* field, Message* message) {
@@ -75,6 +76,7 @@ void AddOption(CLI::App& command, const std::string& name, const FieldDescriptor
 void AddSchemaOptions(CLI::App& command, Message* message) {
   const auto& type = *message->GetDescriptor();
   for (int f = 0; f < type.field_count(); ++f) {
+    if (type.field(f)->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) continue;
     AddOption(command, "--" + absl::StrReplaceAll(type.field(f)->name(), {{"_", "-"}}), type.field(f), message);
   }
 }

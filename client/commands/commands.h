@@ -27,6 +27,9 @@ CommandFunction SetUpPhysiology(CLI::App& command);
 CommandFunction SetUpLungs(CLI::App& command);
 // calibrate.cc: calibrate/ on a scene compiled in this process; no service. kMissed if the measures are not reached.
 CommandFunction SetUpCalibrate(CLI::App& command);
+// fit.cc: fit/ on the lungs of a scene and files of landmarks; no service. Files are written whole or not at all.
+CommandFunction SetUpRegister(CLI::App& command);
+CommandFunction SetUpFit(CLI::App& command);
 // patient.cc, phantom.cc: imaging/ on files; no service, except with `patient --serve`. Files are written whole or not
 // at all.
 CommandFunction SetUpPatient(CLI::App& command);
@@ -80,9 +83,18 @@ CommandFunction SetUpStudyError(CLI::App& command);
 CommandFunction SetUpStudyStability(CLI::App& command);
 CommandFunction SetUpStudyCost(CLI::App& command);
 CommandFunction SetUpStudyStreaming(CLI::App& command);
+CommandFunction SetUpStudySensitivity(CLI::App& command);
+CommandFunction SetUpStudyUncertainty(CLI::App& command);
+CommandFunction SetUpStudyConvergence(CLI::App& command);
+// study_motion.cc: fit/ on many people's landmarks, in this process; no service.
+CommandFunction SetUpStudyMotion(CLI::App& command);
 CommandFunction SetUpStudyList(CLI::App& command);
 CommandFunction SetUpStudyWatch(CLI::App& command);
 CommandFunction SetUpStudyDelete(CLI::App& command);
+// credibility.cc: the studies that a context of use asks for, in this process, and a report of them (credibility/).
+// With
+// --check, kMissed if a required section is not met.
+CommandFunction SetUpCredibility(CLI::App& command);
 // campaign.cc: runs in processes of their own, on this machine or on Slurm (campaign/). `work` is what these processes
 // run. Repeated, `run` continues where it was interrupted. kMissed if a limit is exceeded, kFailed if runs failed.
 CommandFunction SetUpCampaignRun(CLI::App& command);

@@ -5,15 +5,16 @@
 #include "absl/strings/str_join.h"
 #include "client/cli/schema_options.h"
 #include "client/cli/shared_options.h"
+#include "client/cli/study_inputs.h"
 #include "client/commands/commands.h"
 #include "client/connection/connection.h"
 #include "client/connection/errors.h"
+#include "client/connection/wait_for_study.h"
 #include "client/files/junit.h"
 #include "client/files/study_limits.h"
 #include "client/files/whole_file.h"
 #include "client/print/output.h"
 #include "client/print/rows.h"
-#include "client/terminal/progress.h"
 #include "phrenic/v1/study.grpc.pb.h"
 #include "server/service/server.h"
 
@@ -47,6 +48,12 @@ const google::protobuf::Message& ResultTables(const v1::StudyResult& result) {
       return result.cost();
     case v1::StudyResult::kStreaming:
       return result.streaming();
+    case v1::StudyResult::kSensitivity:
+      return result.sensitivity();
+    case v1::StudyResult::kUncertainty:
+      return result.uncertainty();
+    case v1::StudyResult::kConvergence:
+      return result.convergence();
     default:
       return result.error();
   }
@@ -67,26 +74,6 @@ std::string StudyStateName(v1::StudyState state) {
   }
 }
 
-// Waits for the study and shows a progress bar. `study` receives its last state.
-grpc::Status WaitForStudy(const Context& context, v1::StudyService::Stub& stub, const std::string& id,
-                          v1::Study* study) {
-  v1::WatchStudyRequest request;
-  request.set_study_id(id);
-  Progress progress(id, 1);
-  return StreamWithReconnect(context, [&](OnReceived received) {
-    grpc::ClientContext call;
-    const Interruption::Scope scope(*context.interruption, call);
-    const auto reader = stub.WatchStudy(&call, request);
-    for (v1::WatchStudyResponse response; reader->Read(&response);) {
-      received();
-      progress.SetDetail(response.study().doing());
-      progress.Update(response.study().progress());
-      *study = response.study();
-    }
-    return reader->Finish();
-  });
-}
-
 void PrintReference(const v1::Reference& reference) {
   std::cout << absl::StrFormat(
       "reference: %s, tolerance %g m; its own error is %.2g mm (maximum), %.2g mm (RMS over the vertices that move "
@@ -101,12 +88,26 @@ void PrintStreaming(const v1::StreamingTable& table) {
                                table.advice(), table.vertices(), table.frames(), table.basis_bytes());
 }
 
+// Says how many runs a table is of, and how many failed.
+template <typename RunsTable>
+void PrintRuns(const RunsTable& table) {
+  std::cout << absl::StrFormat("\n%d runs", table.runs());
+  if (table.failed() > 0) std::cout << absl::StrFormat("; %d FAILED: %s", table.failed(), table.problem());
+  std::cout << "\n";
+}
+
 void PrintStudy(const v1::StudyResult& result) {
   std::cout << absl::StrFormat("%s (scene %.12s), %.1f s\n", result.scene(), result.scene_hash(), result.took_s());
   if (result.has_error()) PrintReference(result.error().reference());
   PrintTables(ResultTables(result), std::cout);
   if (result.has_error()) std::cout << "\n" << result.error().advice() << "\n";
   if (result.has_streaming()) PrintStreaming(result.streaming());
+  if (result.has_sensitivity()) {
+    PrintRuns(result.sensitivity());
+    std::cout << result.sensitivity().advice() << "\n";
+  }
+  if (result.has_uncertainty()) PrintRuns(result.uncertainty());
+  if (result.has_convergence()) PrintRuns(result.convergence());
   for (const std::string& note : result.cost().notes()) std::cout << "\nnote: " << note << "\n";
   if (result.cost().has_growth_exponent()) {
     std::cout << absl::StrFormat("\ncost grows with vertices^%.3f\n", result.cost().growth_exponent());
@@ -269,6 +270,29 @@ CommandFunction SetUpStudyCost(CLI::App& command) {
 CommandFunction SetUpStudyStreaming(CLI::App& command) {
   const auto options = std::make_shared<StudyOptions>();
   return SetUpStudy(command, options, options->request.mutable_streaming());
+}
+
+CommandFunction SetUpStudySensitivity(CLI::App& command) {
+  const auto options = std::make_shared<StudyOptions>();
+  v1::SensitivityStudy* study = options->request.mutable_sensitivity();
+  AddInputs(command, study->mutable_inputs());
+  AddOutputs(command, study->mutable_outputs());
+  return SetUpStudy(command, options, study);
+}
+
+CommandFunction SetUpStudyUncertainty(CLI::App& command) {
+  const auto options = std::make_shared<StudyOptions>();
+  v1::UncertaintyStudy* study = options->request.mutable_uncertainty();
+  AddInputs(command, study->mutable_inputs());
+  AddOutputs(command, study->mutable_outputs());
+  return SetUpStudy(command, options, study);
+}
+
+CommandFunction SetUpStudyConvergence(CLI::App& command) {
+  const auto options = std::make_shared<StudyOptions>();
+  v1::ConvergenceStudy* study = options->request.mutable_convergence();
+  AddOutputs(command, study->mutable_outputs());
+  return SetUpStudy(command, options, study);
 }
 
 CommandFunction SetUpStudyList(CLI::App&) { return ListStudies; }

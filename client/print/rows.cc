@@ -34,12 +34,21 @@ std::string Text(const Message& row, const FieldDescriptor& field, bool every_di
   }
 }
 
+// True if a row has a cell for each field.
+bool IsFlat(const google::protobuf::Descriptor& row) {
+  for (int f = 0; f < row.field_count(); ++f) {
+    if (row.field(f)->is_repeated() || row.field(f)->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) return false;
+  }
+  return true;
+}
+
 std::vector<const FieldDescriptor*> TablesOf(const Message& message) {
   std::vector<const FieldDescriptor*> tables;
   const auto& type = *message.GetDescriptor();
   for (int f = 0; f < type.field_count(); ++f) {
     const FieldDescriptor* field = type.field(f);
     if (!field->is_repeated() || field->cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) continue;
+    if (!IsFlat(*field->message_type())) continue;
     if (message.GetReflection()->FieldSize(message, field) > 0) tables.push_back(field);
   }
   return tables;

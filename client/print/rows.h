@@ -1,4 +1,5 @@
-// Tables made from messages: each repeated field of flat messages is a table whose columns are the message's fields.
+// Tables made from messages: each repeated field of flat messages is a table whose columns are the message's fields;
+// messages with lists or messages in them are left out.
 #ifndef PHRENIC_CLIENT_PRINT_ROWS_H_
 #define PHRENIC_CLIENT_PRINT_ROWS_H_
 

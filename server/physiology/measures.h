@@ -25,6 +25,7 @@ double DomeSpeed(const Recording& r, const Recording&);  // greatest descent of 
 double DomeMotion(const Recording& r, const Recording&);
 // Rise of a column: its greatest height minus that at the beginning [mm]; and of both apices at the peak, the smaller.
 double RightRise(const Recording& r, const Recording&);
+double LeftRise(const Recording& r, const Recording&);
 double BothRise(const Recording& r, const Recording&);
 double LesserDescent(const Recording& r, const Recording&);
 // Height of the right apex at the beginning over that of the other breath [mm].

@@ -66,6 +66,7 @@ double DomeMotion(const Recording& r, const Recording&) {
 }
 
 double RightRise(const Recording& r, const Recording&) { return Rise(r, kRightApex); }
+double LeftRise(const Recording& r, const Recording&) { return Rise(r, kLeftApex); }
 double BothRise(const Recording& r, const Recording&) {
   return -std::max(FallAtPeak(r, kRightApex), FallAtPeak(r, kLeftApex));
 }

@@ -18,9 +18,11 @@ constexpr int kMoments = 10;              // of a breath, at which flaws are loo
 
 class Recorder {
  public:
-  Recorder(const Subject& subject, const v1::Parameters& parameters, FlawSearch search, Recording& recording)
+  Recorder(const Subject& subject, const v1::Parameters& parameters, FlawSearch search, const EachSample& each,
+           Recording& recording)
       : subject_(subject),
         parameters_(parameters),
+        each_(each),
         recording_(recording),
         next_moment_(search == FlawSearch::kNever ? HUGE_VAL : 0) {
     recording_.flaws.fill(kNone);
@@ -36,6 +38,7 @@ class Recorder {
     std::copy(heights.begin(), heights.end(), now.begin() + kRightApex);
     now[kLowerRibs] = LowerRibShift(model, subject_.parts, state);
     Keep(time, now, at.breath, state);
+    if (each_) each_(time, at);
     LookForFlaws(time, state);
   }
 
@@ -77,6 +80,7 @@ class Recorder {
 
   const Subject& subject_;
   const v1::Parameters& parameters_;
+  const EachSample& each_;
   Recording& recording_;
   double fullest_ = 0, next_moment_;
 };
@@ -103,11 +107,11 @@ absl::StatusOr<std::unique_ptr<const Subject>> Subject::Of(const Model& model) {
 }
 
 absl::StatusOr<Recording> Record(const Subject& subject, const std::string& breath, const v1::Parameters& parameters,
-                                 absl::FunctionRef<bool(double)> progress, FlawSearch search) {
+                                 absl::FunctionRef<bool(double)> progress, FlawSearch search, const EachSample& each) {
   Recording recording;
   recording.subject = &subject;
   recording.breath = breath;
-  Recorder recorder(subject, parameters, search, recording);
+  Recorder recorder(subject, parameters, search, each, recording);
   Workspace work = subject.model.MakeWorkspace();
   State state = subject.model.InitialState();
   const double length = parameters.breath_length(), interval = std::max(kSampleInterval, length / kMostSamples);

@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_PHYSIOLOGY_RECORDING_H_
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -65,12 +66,15 @@ struct Recording {
 // long.
 enum class FlawSearch { kAtTenMoments, kNever };
 
+// Called with each sample of the measured breath: the time from its beginning [s], and the moment.
+using EachSample = std::function<void(double time, const EvalContext& at)>;
+
 // Breathes with the parameters, every field set. Before the measured breath come those that let it settle: one, and at
 // least 4 s, if the scene has pressures. CANCELLED if `progress`, which gets 0 to 1, returns false. A breath that
 // diverges has a problem.
 absl::StatusOr<Recording> Record(const Subject& subject, const std::string& breath, const v1::Parameters& parameters,
                                  absl::FunctionRef<bool(double)> progress,
-                                 FlawSearch search = FlawSearch::kAtTenMoments);
+                                 FlawSearch search = FlawSearch::kAtTenMoments, const EachSample& each = nullptr);
 
 }  // namespace phrenic::physiology
 

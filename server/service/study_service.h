@@ -14,7 +14,7 @@
 #include "server/session/limits.h"
 #include "server/session/models.h"
 #include "server/store/store.h"
-#include "server/study/studies.h"
+#include "server/study/queue/studies.h"
 
 namespace phrenic::service {
 

@@ -6,6 +6,7 @@
 
 #include "client/campaign/worker.h"
 #include "client/cli/scene_argument.h"
+#include "client/cli/study_inputs.h"
 #include "client/print/comparison.h"
 #include "server/cluster/redis.h"
 #include "server/schema/id.h"
@@ -17,6 +18,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (pulls.ok() && pulls->size() != 1) std::abort();
   (void)client::ReadSettings({text});
   (void)client::ReadLimits({text});
+  const auto input = client::ReadUncertainInput(text);
+  if (input.ok() && input->distribution_case() == v1::UncertainInput::DISTRIBUTION_NOT_SET) std::abort();
+  (void)client::ReadStudiedOutput(text);
   const auto share = client::ReadShare(text);
   if (share.ok() && (share->number < 0 || share->number >= share->count)) std::abort();
   const auto redis = cluster::ParseRedisAddress(text);

@@ -15,7 +15,7 @@
 #include "server/study/cost_parts.h"
 #include "server/study/cost_sizes.h"
 #include "server/study/cost_trials.h"
-#include "server/study/run.h"
+#include "server/study/queue/run.h"
 #include "server/study/thesis_tables.h"
 #include "server/study/timed_model.h"
 #include "tests/compile_text.h"

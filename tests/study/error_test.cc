@@ -9,7 +9,7 @@
 
 #include "absl/strings/match.h"
 #include "server/schema/fields.h"
-#include "server/study/run.h"
+#include "server/study/queue/run.h"
 #include "tests/compile_text.h"
 #include "tests/study/run_on.h"
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "server/study/run.h"
+#include "server/study/queue/run.h"
 #include "tests/compile_text.h"
 
 namespace phrenic::study {

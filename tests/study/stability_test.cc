@@ -8,7 +8,7 @@
 #include <set>
 
 #include "server/study/extremes.h"
-#include "server/study/run.h"
+#include "server/study/queue/run.h"
 #include "server/study/stability_limits.h"
 #include "server/study/stability_map.h"
 #include "server/study/subject.h"

@@ -1,4 +1,4 @@
-#include "server/study/studies.h"
+#include "server/study/queue/studies.h"
 
 #include <gmock/gmock.h>
 

@@ -135,10 +135,14 @@ Eigen::VectorXd LungTissue::Forces(const ConstPoints& displacement) const {
   return forces.reshaped();
 }
 
-std::optional<LayeredCholesky> LungTissue::Factorise(const std::vector<bool>& free, const StopCheck& stop) const {
+std::vector<int> LungTissue::LayerStarts() const {
   std::vector<int> starts;
   for (const int node : grid_.layers()) starts.push_back(3 * node);
-  return LayeredCholesky::Make(Stiffness(free), starts, stop);
+  return starts;
+}
+
+std::optional<LayeredCholesky> LungTissue::Factorise(const std::vector<bool>& free, const StopCheck& stop) const {
+  return LayeredCholesky::Make(Stiffness(free), LayerStarts(), stop);
 }
 
 Points LungTissue::SolveWith(const LayeredCholesky& factors, const ConstPoints& displacement) const {
@@ -157,6 +161,25 @@ Points LungTissue::SolveVectors(const ConstPoints& displacement) const {
     if (free.back()) at.setZero();
   }
   return SolveWith(*Factorise(free, {}), held);  // positive definite as the first one was
+}
+
+absl::StatusOr<Points> LungTissue::SolveThrough(const ConstPoints& points, const ConstPoints& vectors,
+                                                double weight) const {
+  std::vector<BrickMatrix> bricks(grid_.bricks().size(), BrickMatrix::Zero());
+  Points forces = Points::Zero(3, grid_.nodes().cols());
+  for (Eigen::Index p = 0; p < points.cols(); ++p) {
+    const auto [brick, local] = grid_.Locate(points.col(p));
+    AddSpring(local, weight * Eigen::Matrix3d::Identity(), bricks[brick]);
+    forces(Eigen::all, grid_.bricks()[brick]) += weight * vectors.col(p) * WeightsAt(local).transpose();
+  }
+  Entries entries;
+  for (size_t b = 0; b < bricks.size(); ++b) AddBrick(grid_.bricks()[b], bricks[b], entries);
+  Matrix springs(forces.size(), forces.size());
+  springs.setFromTriplets(entries.begin(), entries.end());
+  const auto factors =
+      LayeredCholesky::Make(Stiffness(std::vector<bool>(places_.size(), false)) + springs, LayerStarts(), {});
+  if (factors && forces.allFinite()) return factors->Solve(forces.reshaped()).reshaped(3, grid_.nodes().cols());
+  return absl::InvalidArgumentError("the deformation through the points cannot be solved for: check their numbers");
 }
 
 double LungTissue::Energy(const Points& nodes, const ConstPoints& displacement) const {

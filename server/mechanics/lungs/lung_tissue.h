@@ -60,6 +60,10 @@ class LungTissue {
   // The same for displacements of the surroundings at the boundary points (3 x points) [m], whose part along the
   // surface acts through the tangential stiffness. The surface is free at columns with NaN.
   Points SolveVectors(const ConstPoints& displacement) const;
+  // Returns the displacement u of the nodes [m] that minimises E + w/2 sum |u(x_i) - r_i|^2 for surroundings at rest:
+  // the smallest deformation through the vectors r (3 x n) [m] at the points x (3 x n) [m], per modulus; `weight` w
+  // [m]. Costs a factorisation. INVALID_ARGUMENT if it fails: a vector that is not finite, or points without number.
+  absl::StatusOr<Points> SolveThrough(const ConstPoints& points, const ConstPoints& vectors, double weight) const;
   // Returns E per Young's modulus [m^3] of a displacement of the nodes.
   double Energy(const Points& nodes, const ConstPoints& displacement) const;
 
@@ -76,6 +80,8 @@ class LungTissue {
   Matrix Stiffness(const std::vector<bool>& free) const;
   // Forces of the springs on the nodes, per modulus.
   Eigen::VectorXd Forces(const ConstPoints& displacement) const;
+  // Of LayeredCholesky.
+  std::vector<int> LayerStarts() const;
   std::optional<LayeredCholesky> Factorise(const std::vector<bool>& free, const StopCheck& stop) const;
   Points SolveWith(const LayeredCholesky& factors, const ConstPoints& displacement) const;
   Eigen::Matrix3d SpringOf(Eigen::Index point) const;

@@ -12,6 +12,10 @@ const kinds = {
   cost: "Cost",
   streaming: "Error against bandwidth",
   physiology: "Physiology",
+  sensitivity: "Sensitivity",
+  uncertainty: "Uncertainty",
+  convergence: "Convergence of the outputs",
+  credibility: "Credibility",
 };
 
 /** Returns "Cost: thorax – Phrenic". */
@@ -51,7 +55,7 @@ function factsOf({ sceneHash, parameters, tookS, result }: StudyResult): [string
   if (parameters !== undefined) facts.push(["Parameters", parameterSummary(parameters)]);
   const simulated = result.case === "error" ? result.value.seconds : 0;
   const took = `the study took ${formatDigits(tookS, 3)} s`;
-  if (result.case !== "physiology")
+  if (result.case !== "physiology" && result.case !== "credibility")
     facts.push(["Duration", simulated > 0 ? `${formatDigits(simulated)} s simulated; ${took}` : took]);
   if (sceneHash !== "") facts.push(["Scene's hash", sceneHash]);
   return facts;

@@ -10,6 +10,16 @@ const whole: Record<string, string> = {
   mbit_per_second: "Mbit/s at 30 fps",
   order: "Measured order",
   case: "Case",
+  p025: "2.5 %",
+  p5: "5 %",
+  p25: "25 %",
+  p50: "Median",
+  p75: "75 %",
+  p95: "95 %",
+  p975: "97.5 %",
+  change_percent: "Change [%]",
+  mean_size: "Mean size of the effects",
+  predicted_share: "Predicted share of the variance",
 };
 
 /** Returns the heading of a column from the name of its field, with the unit at its end: "Error RMS [mm]". */

@@ -11,6 +11,10 @@ const marks: Record<string, [string, string]> = {
   stable: ["✔", "good"],
   stopped: ["■", "warn"],
   FAILED: ["✖", "bad"],
+  holds: ["✔", "good"],
+  fails: ["✖", "bad"],
+  "no evidence": ["■", "warn"],
+  "not measured": ["■", "warn"],
 };
 
 /** A table of messages of one type, with a column for each field that is set in some row. */

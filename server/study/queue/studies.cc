@@ -1,8 +1,8 @@
-#include "server/study/studies.h"
+#include "server/study/queue/studies.h"
 
 #include "absl/strings/str_cat.h"
 #include "phrenic/v1/saved.pb.h"
-#include "server/study/run.h"
+#include "server/study/queue/run.h"
 
 namespace phrenic::study {
 namespace {
@@ -27,6 +27,12 @@ const char* KindOf(const v1::CreateStudyRequest& request) {
       return "cost";
     case v1::CreateStudyRequest::kStreaming:
       return "streaming";
+    case v1::CreateStudyRequest::kSensitivity:
+      return "sensitivity";
+    case v1::CreateStudyRequest::kUncertainty:
+      return "uncertainty";
+    case v1::CreateStudyRequest::kConvergence:
+      return "convergence";
     case v1::CreateStudyRequest::WHAT_NOT_SET:
       break;
   }
@@ -75,7 +81,7 @@ Studies::Studies(SceneName scene_name, OwnersCompiler compile, const Clock& cloc
 absl::StatusOr<Studies::Draft> Studies::MakeDraft(const v1::CreateStudyRequest& request,
                                                   const std::string& owner) const {
   const char* kind = KindOf(request);
-  if (kind == nullptr) return absl::InvalidArgumentError("what: must be set: error, stability, cost or streaming");
+  if (kind == nullptr) return absl::InvalidArgumentError(kNoStudy);
   const absl::StatusOr<std::string> scene = scene_name_(request);
   if (!scene.ok()) return scene.status();
   Draft draft;

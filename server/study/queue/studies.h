@@ -1,6 +1,6 @@
 // The studies of a server: queued, run one at a time, kept with their results.
-#ifndef PHRENIC_SERVER_STUDY_STUDIES_H_
-#define PHRENIC_SERVER_STUDY_STUDIES_H_
+#ifndef PHRENIC_SERVER_STUDY_QUEUE_STUDIES_H_
+#define PHRENIC_SERVER_STUDY_QUEUE_STUDIES_H_
 
 #include <cstdint>
 #include <functional>
@@ -97,4 +97,4 @@ class Studies {
 
 }  // namespace phrenic::study
 
-#endif  // PHRENIC_SERVER_STUDY_STUDIES_H_
+#endif  // PHRENIC_SERVER_STUDY_QUEUE_STUDIES_H_

@@ -1,4 +1,4 @@
-#include "server/study/run.h"
+#include "server/study/queue/run.h"
 
 #include <chrono>
 #include <utility>
@@ -9,6 +9,9 @@
 #include "server/study/stability.h"
 #include "server/study/streaming.h"
 #include "server/study/subject.h"
+#include "server/study/uncertainty/convergence.h"
+#include "server/study/uncertainty/sensitivity.h"
+#include "server/study/uncertainty/uncertainty.h"
 
 namespace phrenic::study {
 namespace {
@@ -19,39 +22,39 @@ void FillStudy(v1::CreateStudyRequest& request) {
   if (request.has_stability()) schema::FillDefaults(request.mutable_stability());
   if (request.has_cost()) schema::FillDefaults(request.mutable_cost());
   if (request.has_streaming()) schema::FillDefaults(request.mutable_streaming());
+  if (request.has_sensitivity()) schema::FillDefaults(request.mutable_sensitivity());
+  if (request.has_uncertainty()) schema::FillDefaults(request.mutable_uncertainty());
+  if (request.has_convergence()) schema::FillDefaults(request.mutable_convergence());
+}
+
+template <typename Table>
+absl::Status Put(absl::StatusOr<Table> table, Table& result) {
+  if (!table.ok()) return table.status();
+  result = *std::move(table);
+  return absl::OkStatus();
 }
 
 absl::Status Fill(const v1::CreateStudyRequest& request, const Subject& subject, const Compiler& compile,
                   const Progress& progress, v1::StudyResult& result) {
   switch (request.what_case()) {
-    case v1::CreateStudyRequest::kError: {
-      auto table = StudyError(request, subject, compile, progress);
-      if (!table.ok()) return table.status();
-      *result.mutable_error() = *std::move(table);
-      return absl::OkStatus();
-    }
-    case v1::CreateStudyRequest::kCost: {
-      auto table = StudyCost(request, subject, compile, progress);
-      if (!table.ok()) return table.status();
-      *result.mutable_cost() = *std::move(table);
-      return absl::OkStatus();
-    }
-    case v1::CreateStudyRequest::kStability: {
-      auto table = StudyStability(request, subject, progress);
-      if (!table.ok()) return table.status();
-      *result.mutable_stability() = *std::move(table);
-      return absl::OkStatus();
-    }
-    case v1::CreateStudyRequest::kStreaming: {
-      auto table = StudyStreaming(request, subject, progress);
-      if (!table.ok()) return table.status();
-      *result.mutable_streaming() = *std::move(table);
-      return absl::OkStatus();
-    }
+    case v1::CreateStudyRequest::kError:
+      return Put(StudyError(request, subject, compile, progress), *result.mutable_error());
+    case v1::CreateStudyRequest::kCost:
+      return Put(StudyCost(request, subject, compile, progress), *result.mutable_cost());
+    case v1::CreateStudyRequest::kStability:
+      return Put(StudyStability(request, subject, progress), *result.mutable_stability());
+    case v1::CreateStudyRequest::kStreaming:
+      return Put(StudyStreaming(request, subject, progress), *result.mutable_streaming());
+    case v1::CreateStudyRequest::kSensitivity:
+      return Put(StudySensitivity(request, subject, progress), *result.mutable_sensitivity());
+    case v1::CreateStudyRequest::kUncertainty:
+      return Put(StudyUncertainty(request, subject, progress), *result.mutable_uncertainty());
+    case v1::CreateStudyRequest::kConvergence:
+      return Put(StudyConvergence(request, subject, compile, progress), *result.mutable_convergence());
     case v1::CreateStudyRequest::WHAT_NOT_SET:
       break;
   }
-  return absl::InvalidArgumentError("what: must be set: error, stability, cost or streaming");
+  return absl::InvalidArgumentError(kNoStudy);
 }
 
 }  // namespace
