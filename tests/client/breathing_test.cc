@@ -30,7 +30,8 @@ TEST(Presets, UnknownOnesAreRejectedWithTheKnownOnes) {
 }
 
 TEST(Physiology, PrintsValueRangeAndVerdict) {
-  const Outcome study = Phrenic({"physiology", "thorax-thesis", "--resolution", "20", "--preset", "quiet", "-o", "json"});
+  const Outcome study =
+      Phrenic({"physiology", "thorax-thesis", "--resolution", "20", "--preset", "quiet", "-o", "json"});
   ASSERT_EQ(study.code, 0) << study.err;
   const auto rows = study.json()["rows"];
   ASSERT_GE(rows.size(), 30u);
