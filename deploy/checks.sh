@@ -9,7 +9,7 @@ scripts    40 shellcheck, and the tests of deploy/
 proto       5 buf's lint
 web        40 type check, unit tests and build of the viewer
 build     490 the Release build by gcc, warnings as errors
-tests     180 what depends on that build: laws of mechanics, formats, physiology, judges, benches, trials
+tests     200 what depends on that build: laws of mechanics, formats, physiology, judges, benches, trials
 e2e       450 the viewer in headless Chromium
 asan      950 all other tests under ASan and UBSan, built by clang
 tsan      200 the tests of threads under ThreadSanitizer
@@ -234,7 +234,7 @@ check_build() {
 }
 
 stage_build() {
-  check check_build phrenicd phrenic package_words release_tests
+  check check_build phrenicd phrenic package_words python_package release_tests
 }
 
 # The laws: tests of ctest whose names begin so.

@@ -29,6 +29,9 @@ install(FILES deploy/phrenicd.toml DESTINATION /etc/phrenic)
 install(FILES deploy/nginx/guard.conf deploy/nginx/cluster.conf deploy/nginx/server.conf deploy/nginx/limits.conf
               deploy/nginx/listen.conf DESTINATION /etc/nginx/phrenic)
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_BINARY_DIR}/python/src/phrenic DESTINATION lib/python3/dist-packages
+        PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY client/python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
@@ -40,7 +43,8 @@ set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "ca-certificates, nginx")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "ca-certificates, nginx, python3-grpcio, python3-numpy, python3-protobuf")
+set(CPACK_DEBIAN_PACKAGE_PROVIDES "python3-phrenic")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA
     "${PROJECT_SOURCE_DIR}/deploy/debian/postinst;${PROJECT_SOURCE_DIR}/deploy/debian/prerm;${PROJECT_SOURCE_DIR}/deploy/debian/postrm;${PROJECT_SOURCE_DIR}/deploy/debian/conffiles")
 set(CPACK_STRIP_FILES ON)

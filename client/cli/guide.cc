@@ -56,7 +56,7 @@ constexpr Synonym kSynonyms[] = {
     {"version", "--version"}, {"diff", "compare"},       {"distance", "compare"},
     {"clone", "fork"},        {"copy", "fork"},          {"simulate", "run"},
     {"parameters", "set"},    {"breathe", "physiology"}, {"completions", "completion"},
-    {"fit", "calibrate"},     {"tune", "calibrate"},
+    {"tune", "calibrate"},
 };
 
 }  // namespace

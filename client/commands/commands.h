@@ -23,8 +23,13 @@ CommandFunction SetUpRun(CLI::App& command);
 CommandFunction SetUpReplay(CLI::App& command);
 // physiology.cc: CheckPhysiology, in this process or on a server. With --check, kMissed if a value is out of its range.
 CommandFunction SetUpPhysiology(CLI::App& command);
+// lungs.cc: physiology/lung_breath.h on a scene compiled in this process; no service.
+CommandFunction SetUpLungs(CLI::App& command);
 // calibrate.cc: calibrate/ on a scene compiled in this process; no service. kMissed if the measures are not reached.
 CommandFunction SetUpCalibrate(CLI::App& command);
+// fit.cc: fit/ on the lungs of a scene and files of landmarks; no service. Files are written whole or not at all.
+CommandFunction SetUpRegister(CLI::App& command);
+CommandFunction SetUpFit(CLI::App& command);
 // patient.cc, phantom.cc: imaging/ on files; no service, except with `patient --serve`. Files are written whole or not
 // at all.
 CommandFunction SetUpPatient(CLI::App& command);
@@ -81,6 +86,8 @@ CommandFunction SetUpStudyStreaming(CLI::App& command);
 CommandFunction SetUpStudySensitivity(CLI::App& command);
 CommandFunction SetUpStudyUncertainty(CLI::App& command);
 CommandFunction SetUpStudyConvergence(CLI::App& command);
+// study_motion.cc: fit/ on many people's landmarks, in this process; no service.
+CommandFunction SetUpStudyMotion(CLI::App& command);
 CommandFunction SetUpStudyList(CLI::App& command);
 CommandFunction SetUpStudyWatch(CLI::App& command);
 CommandFunction SetUpStudyDelete(CLI::App& command);

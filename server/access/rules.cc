@@ -27,6 +27,7 @@ constexpr Rule kRules[] = {
     {"SessionService.ForkSession", kOwner, kViewer, kChanges},
     {"SessionService.ListSessions", kNone, kNone, kReads},
     {"SessionService.GetSession", kNone, kViewer, kReads},
+    {"SessionService.GetState", kNone, kViewer, kReads},
     {"SessionService.DeleteSession", kNone, kOwner, kChanges},
     {"SessionService.PlaySession", kNone, kController, kChanges},
     {"SessionService.PauseSession", kNone, kController, kChanges},

@@ -18,7 +18,6 @@ using meshio::AppendBytes;
 using meshio::ByteReader;
 
 constexpr std::size_t kMaxDeflateRatio = 1032;  // zlib's manual
-const Eigen::Vector3d kRasToLps(-1, -1, 1);
 
 // Returns the integer before the next quotation mark, or -1.
 int KeyOf(std::string_view text) {
@@ -128,38 +127,17 @@ absl::StatusOr<LabelVolume> ReadNifti(const std::string& path) {
 }
 
 std::string WriteNifti(const LabelVolume& volume) {
-  constexpr int kHeader = 348, kUint16 = 512, kMillimetres = 2, kScanner = 1;
+  constexpr int kUint16 = 512;
   const std::string names = volume.names.empty() ? "" : NamesExtension(volume.names);
-  const std::size_t extension = names.empty() ? 0 : names.size() + 8;
-  std::string bytes;
-  const auto pad = [&bytes](std::size_t to) { bytes.resize(to, '\0'); };
-  AppendBytes(bytes, std::int32_t{kHeader});
-  pad(40);
-  for (const int along : {3, volume.size.x(), volume.size.y(), volume.size.z(), 1, 1, 1, 1}) {
-    AppendBytes(bytes, static_cast<std::int16_t>(along));
-  }
-  pad(70);
-  AppendBytes(bytes, std::int16_t{kUint16});
-  AppendBytes(bytes, std::int16_t{16});
-  pad(76);
-  AppendBytes(bytes, 1.0F);
-  for (const double along : volume.Spacing()) AppendBytes(bytes, static_cast<float>(along));
-  pad(108);
-  AppendBytes(bytes, static_cast<float>(kHeader + 4 + extension));
-  pad(123);
-  bytes.push_back(kMillimetres);
-  pad(254);
-  AppendBytes(bytes, std::int16_t{kScanner});
-  pad(280);
-  const Eigen::Affine3d to_ras = Eigen::Scaling(kRasToLps) * volume.to_patient;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 4; ++column) AppendBytes(bytes, static_cast<float>(to_ras.matrix()(row, column)));
-  }
-  pad(344);
-  bytes.append("n+1\0", 4);
-  bytes.append(names.empty() ? "\0\0\0\0" : "\1\0\0\0", 4);
+  std::string bytes = NiftiHeaderBytes({{3, volume.size.x(), volume.size.y(), volume.size.z(), 1, 1, 1, 1},
+                                        volume.Spacing(),
+                                        volume.to_patient,
+                                        0,
+                                        kUint16,
+                                        16,
+                                        names.empty() ? 0 : names.size() + 8});
   if (!names.empty()) {
-    AppendBytes(bytes, static_cast<std::int32_t>(extension));
+    AppendBytes(bytes, static_cast<std::int32_t>(names.size() + 8));
     AppendBytes(bytes, std::int32_t{0});
     bytes.append(names);
   }

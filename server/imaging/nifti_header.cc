@@ -187,4 +187,36 @@ absl::StatusOr<NiftiHeader> ParseNiftiHeader(std::string_view name, std::string_
   return header;
 }
 
+std::string NiftiHeaderBytes(const NiftiLayout& layout) {
+  using meshio::AppendBytes;
+  constexpr int kHeader = 348, kMillimetres = 2, kScanner = 1;
+  std::string bytes;
+  const auto pad = [&bytes](std::size_t to) { bytes.resize(to, '\0'); };
+  AppendBytes(bytes, std::int32_t{kHeader});
+  pad(40);
+  for (const int along : layout.dimensions) AppendBytes(bytes, static_cast<std::int16_t>(along));
+  pad(68);
+  for (const int number : {layout.intent, layout.type, layout.bits}) {
+    AppendBytes(bytes, static_cast<std::int16_t>(number));
+  }
+  pad(76);
+  AppendBytes(bytes, 1.0F);
+  for (const double along : layout.spacing) AppendBytes(bytes, static_cast<float>(along));
+  pad(108);
+  AppendBytes(bytes, static_cast<float>(kHeader + 4 + layout.extension));
+  pad(123);
+  bytes.push_back(kMillimetres);
+  pad(254);
+  AppendBytes(bytes, std::int16_t{kScanner});
+  pad(280);
+  const Eigen::Affine3d to_ras = Eigen::Scaling(kRasToLps) * layout.to_patient;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) AppendBytes(bytes, static_cast<float>(to_ras.matrix()(row, column)));
+  }
+  pad(344);
+  bytes.append("n+1\0", 4);
+  bytes.append(layout.extension == 0 ? "\0\0\0\0" : "\1\0\0\0", 4);
+  return bytes;
+}
+
 }  // namespace phrenic::imaging

@@ -3,9 +3,11 @@
 #define PHRENIC_SERVER_IMAGING_NIFTI_HEADER_H_
 
 #include <Eigen/Geometry>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "absl/status/statusor.h"
@@ -55,6 +57,21 @@ bool WithIntegerOf(int type, const Then& then) {
 
 // Parses the header from the start of a file. INVALID_ARGUMENT "name:byte N: ..." if it is not that of a label volume.
 absl::StatusOr<NiftiHeader> ParseNiftiHeader(std::string_view name, std::string_view bytes);
+
+inline const Eigen::Vector3d kRasToLps(-1, -1, 1);
+
+// What a NIfTI-1 header of one file says.
+struct NiftiLayout {
+  std::array<int, 8> dimensions;  // their number, then their sizes
+  Eigen::Vector3d spacing;        // [mm]
+  Eigen::Affine3d to_patient;     // voxel index (i, j, k) -> LPS [mm]
+  int intent;                     // NIfTI's intent code
+  int type, bits;                 // NIfTI's datatype code, bits of a number
+  std::size_t extension;          // bytes of the extension that follows; 0: none
+};
+
+// Returns the header and the four bytes after it, little-endian.
+std::string NiftiHeaderBytes(const NiftiLayout& layout);
 
 }  // namespace phrenic::imaging
 

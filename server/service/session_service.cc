@@ -4,9 +4,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/compile/presets.h"
+#include "server/mechanics/measures/readings.h"
 #include "server/service/calls/idempotent_call.h"
 #include "server/service/calls/session_call.h"
 #include "server/service/calls/status.h"
+#include "server/stream/state_arrays.h"
 
 namespace phrenic::service {
 namespace {
@@ -17,6 +19,27 @@ absl::Status FillSession(absl::StatusOr<v1::Session> session, Response* response
   if (!session.ok()) return session.status();
   *response->mutable_session() = *std::move(session);
   return absl::OkStatus();
+}
+
+// Sets the response's state, or returns why it cannot be read.
+template <class Response>
+absl::Status FillState(session::Session& session, const State& state, const stream::StateParts& parts,
+                       Response* response) {
+  auto arrays = stream::MakeStateArrays(session.model(), session.publisher().layout(), state, parts);
+  if (!arrays.ok()) return arrays.status();
+  *response->mutable_state() = *std::move(arrays);
+  return absl::OkStatus();
+}
+
+// Answers to requests with an id are kept, so they must be small.
+absl::Status CheckRead(const v1::StepSessionRequest& request) {
+  if (!request.read().empty() && !request.request_id().empty()) {
+    return absl::InvalidArgumentError(
+        "read: not with request_id, because answers with an id are kept for repeats; read the state by GetState, or "
+        "send "
+        "expected_tick in place of request_id");
+  }
+  return stream::CheckParts(request.read());
 }
 
 template <class Number>
@@ -50,6 +73,7 @@ void SessionService::AddTo(CallTable& calls) {
   calls.Add(Lane::kSession, *this, &SessionService::PlaySession);
   calls.Add(Lane::kSession, *this, &SessionService::PauseSession);
   calls.Add(Lane::kSession, *this, &SessionService::StepSession);
+  calls.Add(Lane::kSession, *this, &SessionService::GetState);
   calls.Add(Lane::kSession, *this, &SessionService::ResetSession);
   calls.Add(Lane::kSession, *this, &SessionService::UpdateParameters);
   calls.Add(Lane::kSession, *this, &SessionService::PullSession);
@@ -157,15 +181,34 @@ grpc::Status SessionService::PauseSession(grpc::CallbackServerContext* context, 
 grpc::Status SessionService::StepSession(grpc::CallbackServerContext* context, const v1::StepSessionRequest* request,
                                          v1::StepSessionResponse* response) {
   return Change(*context, *request, response, [&](session::Session& session) {
+    if (absl::Status good = CheckRead(*request); !good.ok()) return good;
     const auto tick = OptionalOf(request->has_expected_tick(), request->expected_tick());
     const bool idempotent = !request->request_id().empty();  // a repeat expects the result
     auto stepped = session.Step(
-        request->ticks(), tick, [&] { return !idempotent && context->IsCancelled(); }, request->control_token());
+        request->ticks(), tick, [&] { return !idempotent && context->IsCancelled(); }, request->control_token(),
+        !request->read().empty());
     if (!stepped.ok()) return stepped.status();
+    if (stepped->state.has_value()) {
+      absl::Status read = FillState(session, *stepped->state, request->read(), response);
+      if (!read.ok()) return read;
+    }
     response->set_state_hash(std::move(stepped->state_hash));
     *response->mutable_measures() = std::move(stepped->measures);
     return FillSession(std::move(stepped->session), response);
   });
+}
+
+grpc::Status SessionService::GetState(grpc::CallbackServerContext* context, const v1::GetStateRequest* request,
+                                      v1::GetStateResponse* response) {
+  const auto call = AdmitToSession(guard_, table_, *context, *request);
+  if (!call.ok()) return ToGrpc(call.status());
+  if (absl::Status good = stream::CheckParts(request->read()); !good.ok()) return ToGrpc(good);
+  const auto now = call->session->MakeFork();
+  if (!now.ok()) return ToGrpc(now.status());
+  const Model& model = call->session->model();
+  response->set_state_hash(session::HashText(now->state));
+  *response->mutable_measures() = ReadMeasures(model, MakeEvalContext(model, now->parameters, now->state));
+  return ToGrpc(FillState(*call->session, now->state, request->read(), response));
 }
 
 grpc::Status SessionService::ResetSession(grpc::CallbackServerContext* context, const v1::ResetSessionRequest* request,

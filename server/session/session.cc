@@ -96,9 +96,11 @@ absl::StatusOr<v1::Session> Session::Pause(std::string_view token) {
 }
 
 absl::StatusOr<Session::Stepped> Session::Step(std::int64_t ticks, std::optional<std::int64_t> expected_tick,
-                                               absl::FunctionRef<bool()> cancelled, std::string_view token) {
+                                               absl::FunctionRef<bool()> cancelled, std::string_view token,
+                                               bool keep_state) {
   auto job = std::make_shared<StepJob>();
   job->left = ticks;
+  job->keep_state = keep_state;
   absl::Status started = CallToChange(token, [&] { return loop_.StartJob(job, expected_tick); });
   if (!started.ok()) return started;
   while (!job->done.WaitForNotificationWithTimeout(kLook)) {

@@ -99,9 +99,11 @@ class Session {
   // caller steps it, or if it is played, paused or reset meanwhile; CANCELLED as soon as `cancelled` returns true.
   // Returns OUT_OF_RANGE if a step diverges, FAILED_PRECONDITION if the session had diverged before. Steps without
   // regard to wall-clock time, as fast as the session's CPU share allows; the calling thread asks `cancelled` every 50
-  // ms. The result has the state after the last step, and its hash.
+  // ms. The result has the session's status and the state's hash after the last step, with `keep_state` also a copy of
+  // the state.
   absl::StatusOr<Stepped> Step(std::int64_t ticks, std::optional<std::int64_t> expected_tick,
-                               absl::FunctionRef<bool()> cancelled, std::string_view token = {});
+                               absl::FunctionRef<bool()> cancelled, std::string_view token = {},
+                               bool keep_state = false);
   // Returns to t = 0 and discards waiting updates. Keeps parameters and pulls, forgets a divergence, and pauses. Ends a
   // Step in progress with ABORTED.
   absl::StatusOr<v1::Session> Reset(std::string_view token = {});

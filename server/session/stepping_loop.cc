@@ -190,6 +190,7 @@ void SteppingLoop::EndJob(absl::Status status) {
   job_->result.state_hash = HashText(session_.run.state());
   job_->result.measures = ReadMeasures(
       session_.run.model(), MakeEvalContext(session_.run.model(), session_.run.parameters(), session_.run.state()));
+  if (job_->keep_state) job_->result.state = session_.run.state();
   const auto job = std::exchange(job_, nullptr);
   job->done.Notify();
 }

@@ -30,15 +30,17 @@ namespace phrenic::session {
 // What a call of Session::Step returns.
 struct StepResult {
   v1::Session session;
-  std::string state_hash;    // 16 hexadecimal digits (HashText)
-  MeasureReadings measures;  // of the same state
+  std::string state_hash;      // 16 hexadecimal digits (HashText)
+  MeasureReadings measures;    // of the same state
+  std::optional<State> state;  // set if StepJob::keep_state
 };
 
 // A call of Session::Step in progress. The stepping thread writes it, and notifies `done` when it has ended. The caller
-// sets `left` before it starts the job, and reads the others after `done`.
+// sets `left` and `keep_state` before it starts the job, and reads the others after `done`.
 struct StepJob {
   std::int64_t left = 0;  // ticks
-  absl::Status status;    // why it ended early, or OK
+  bool keep_state = false;
+  absl::Status status;  // why it ended early, or OK
   StepResult result;
   absl::Notification done;
 };

@@ -15,8 +15,7 @@ absl::Status NotFinite(const std::string& what, const State& state) {
   return absl::InternalError(absl::StrCat(what, " is not finite at tick ", state.tick, ": the frame is not sent"));
 }
 
-absl::Status AddPositions(const Model& model, const Layout& layout, const State& state, v1::Frame& frame) {
-  std::string& bytes = *frame.mutable_positions();
+absl::Status AppendPositions(const Model& model, const Layout& layout, const State& state, std::string& bytes) {
   bytes.reserve(sizeof(float) * 3 * layout.vertices());
   Points placed;
   Eigen::MatrixXf floats;
@@ -31,14 +30,14 @@ absl::Status AddPositions(const Model& model, const Layout& layout, const State&
   return absl::OkStatus();
 }
 
-absl::Status AddPoses(const State& state, v1::Frame& frame) {
+absl::Status AppendPoses(const State& state, std::string& bytes) {
   Eigen::MatrixXf floats(7, state.poses.size());
   for (int i = 0; i < static_cast<int>(state.poses.size()); ++i) {
     const Pose& pose = state.poses[i];
     floats.col(i) << pose.rotation.coeffs().cast<float>(), pose.translation.cast<float>();
   }
   if (!floats.allFinite()) return NotFinite("a pose", state);
-  AppendFloats(floats, *frame.mutable_poses());
+  AppendFloats(floats, bytes);
   return absl::OkStatus();
 }
 
@@ -76,6 +75,12 @@ absl::Status AddScalars(const Model& model, const State& state, v1::Frame& frame
 
 }  // namespace
 
+absl::Status AppendBodies(const Model& model, const Layout& layout, const State& state, std::string& positions,
+                          std::string& poses) {
+  if (absl::Status status = AppendPositions(model, layout, state, positions); !status.ok()) return status;
+  return AppendPoses(state, poses);
+}
+
 absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, const Snapshot& snapshot) {
   const State& state = snapshot.state;
   v1::Frame frame;
@@ -86,8 +91,8 @@ absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, co
   frame.set_phase(state.phase - std::floor(state.phase));
   frame.set_unix_nanos(absl::ToUnixNanos(snapshot.made));
   if (!std::isfinite(frame.time()) || !std::isfinite(frame.breath())) return NotFinite("the time", state);
-  if (absl::Status status = AddPositions(model, layout, state, frame); !status.ok()) return status;
-  if (absl::Status status = AddPoses(state, frame); !status.ok()) return status;
+  absl::Status placed = AppendBodies(model, layout, state, *frame.mutable_positions(), *frame.mutable_poses());
+  if (!placed.ok()) return placed;
   if (absl::Status status = AddScalars(model, state, frame); !status.ok()) return status;
   for (const Probe& probe : model.probes) {
     if (absl::Status status = AddProbe(model, state, probe, frame); !status.ok()) return status;

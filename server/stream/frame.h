@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_STREAM_FRAME_H_
 
 #include <cstdint>
+#include <string>
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
@@ -25,6 +26,10 @@ struct Snapshot {
 // the model (proto/README.md); a pose is a quaternion x, y, z, w and a translation. Adds probes, scalar coordinates and
 // measures. Thread-safe; the publisher's thread calls it.
 absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, const Snapshot& snapshot);
+
+// Appends the positions of every streamed body and every pose, in the same form. The errors of MakeFrame. Thread-safe.
+absl::Status AppendBodies(const Model& model, const Layout& layout, const State& state, std::string& positions,
+                          std::string& poses);
 
 }  // namespace phrenic::stream
 

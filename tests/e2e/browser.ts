@@ -64,8 +64,13 @@ export class ViewerPage {
   }
 
   /** Opens the viewer in a new browser context and waits until a frame is drawn. */
-  static async open(browser: Browser, url: string, size = { width: 900, height: 620 }): Promise<ViewerPage> {
-    const context = await browser.newContext({ viewport: size });
+  static async open(
+    browser: Browser,
+    url: string,
+    size = { width: 900, height: 620 },
+    colorScheme: "dark" | "light" = "dark",
+  ): Promise<ViewerPage> {
+    const context = await browser.newContext({ viewport: size, colorScheme });
     const viewer = new ViewerPage(await context.newPage());
     await viewer.page.goto(url);
     await viewer.waitForPicture();

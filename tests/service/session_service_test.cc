@@ -1,4 +1,6 @@
+#include <cstring>
 #include <thread>
+#include <vector>
 
 #include "tests/service/server_fixture.h"
 
@@ -55,6 +57,50 @@ TEST_F(SessionServiceTest, EveryCallForASessionThatDoesNotExistIsNotFound) {
   v1::WatchFramesResponse response;
   EXPECT_FALSE(watch.Read(&response));
   ExpectError(watch.Finish(), grpc::NOT_FOUND, hint);
+}
+
+// Returns the numbers of a `bytes` field.
+std::vector<double> DoublesOf(const std::string& bytes) {
+  std::vector<double> numbers(bytes.size() / sizeof(double));
+  std::memcpy(numbers.data(), bytes.data(), bytes.size());
+  return numbers;
+}
+
+TEST_F(SessionServiceTest, AStepReturnsThePartsOfTheStateThatAreAskedFor) {
+  CreateCube("cube");
+  v1::StepSessionResponse stepped;
+  ASSERT_TRUE(
+      Call(*sessions_, &Sessions::StepSession,
+           "session_id: 'cube' ticks: 10 read: [STATE_PART_POSITIONS, STATE_PART_VELOCITIES, STATE_PART_LAYOUT]",
+           &stepped)
+          .ok());
+  EXPECT_EQ(stepped.state().tick(), 10);
+  EXPECT_EQ(stepped.state().time(), stepped.session().time());
+  ASSERT_EQ(stepped.state().layout().bodies_size(), 1);
+  EXPECT_EQ(stepped.state().layout().bodies(0).vertices(), 8);
+  const std::vector<double> x = DoublesOf(stepped.state().positions()), v = DoublesOf(stepped.state().velocities());
+  ASSERT_EQ(x.size(), 24u);
+  ASSERT_EQ(v.size(), 24u);
+  EXPECT_LT(v[6 * 3 + 2], 0) << "a free corner has not begun to fall";
+  EXPECT_TRUE(stepped.state().body_positions().empty());
+  v1::GetStateResponse state;
+  ASSERT_TRUE(Call(*sessions_, &Sessions::GetState, "session_id: 'cube' read: STATE_PART_POSITIONS", &state).ok());
+  EXPECT_EQ(state.state_hash(), stepped.state_hash());
+  EXPECT_EQ(state.state().positions(), stepped.state().positions());
+  ASSERT_TRUE(Call(*sessions_, &Sessions::StepSession, "session_id: 'cube' ticks: 1", &stepped).ok());
+  EXPECT_FALSE(stepped.has_state()) << "nobody asked for it";
+}
+
+TEST_F(SessionServiceTest, AnUnknownPartIsRefusedAndSoIsOneThatAnIdWouldKeep) {
+  CreateCube("cube");
+  ExpectError(Session(&Sessions::StepSession, "session_id: 'cube' ticks: 1 read: STATE_PART_UNSPECIFIED"),
+              grpc::INVALID_ARGUMENT, "read: 0 is no part of a state");
+  ExpectError(Session(&Sessions::StepSession, "session_id: 'cube' ticks: 1 request_id: 'a' read: STATE_PART_BODIES"),
+              grpc::INVALID_ARGUMENT, "read: not with request_id");
+  ExpectError(Session(&Sessions::GetState, "session_id: 'x'"), grpc::NOT_FOUND, "there is no session \"x\"");
+  v1::GetSessionResponse got;
+  ASSERT_TRUE(Call(*sessions_, &Sessions::GetSession, "session_id: 'cube'", &got).ok());
+  EXPECT_EQ(got.session().tick(), 0) << "a refused step was taken";
 }
 
 TEST_F(SessionServiceTest, FollowingItselfOrAnUnknownSessionIsRefused) {

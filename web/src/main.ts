@@ -8,6 +8,8 @@ import { elementById, make } from "./dom/elements";
 import { SessionChooser } from "./panels/session/session_chooser";
 import { signIn } from "./panels/session/sign_in";
 import { chooseSession } from "./session/choose_session";
+import { lessonPlaceOf, withLessonPlace } from "./session/lessons";
+import { pageViewOf, withPageView } from "./session/page_view";
 import { recipeOf, rerun } from "./session/permalink";
 import { systemClock } from "./timing/clock";
 
@@ -60,10 +62,15 @@ const secondSessionId = here.searchParams.get("beside") ?? undefined;
 const embedded = here.searchParams.has("embed");
 document.body.classList.toggle("embedded", embedded);
 loading.replaceChildren("Loading the scene…");
-history.replaceState(null, "", secondSessionId === undefined && !embedded ? address(sessionId) : here.search);
+const view = embedded ? "expert" : pageViewOf(here, localStorage);
+const shown = secondSessionId === undefined && !embedded ? address(sessionId) : here.search;
+const lesson = lessonPlaceOf(here);
+history.replaceState(null, "", withLessonPlace(withPageView(shown, view), lesson));
 elementById("open-full").setAttribute("href", address(sessionId));
 try {
-  const subject = { sessionId, secondSessionId, open: (query: string) => location.assign(query) };
+  const viewNow = () => (document.body.classList.contains("student") ? "student" : "expert");
+  const open = (query: string) => location.assign(withPageView(query, viewNow()));
+  const subject = { sessionId, secondSessionId, view, lesson, open };
   new App(api, subject, chooser, identity, systemClock).start();
 } catch (error) {
   loading.replaceChildren(

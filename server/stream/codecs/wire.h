@@ -21,6 +21,11 @@ inline void AppendFloats(const Eigen::Ref<const Eigen::MatrixXf>& values, std::s
   bytes.append(reinterpret_cast<const char*>(values.data()), sizeof(float) * values.size());
 }
 
+// Returns the numbers as float64, column by column.
+inline std::string DoublesOf(const Eigen::Ref<const Eigen::MatrixXd>& values) {
+  return {reinterpret_cast<const char*>(values.data()), sizeof(double) * values.size()};
+}
+
 // Appends indices as uint32, column by column.
 inline void AppendIndices(const Eigen::Ref<const Eigen::MatrixXi>& indices, std::string& bytes) {
   static_assert(sizeof(int) == sizeof(std::uint32_t));

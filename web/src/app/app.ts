@@ -6,6 +6,7 @@ import { type ConnectionListener, type ConnectionState, SessionConnection } from
 import { download } from "../dom/download";
 import { elementById } from "../dom/elements";
 import { FrameBuffer } from "../frames/frame_buffer";
+import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import { SessionState } from "../gen/phrenic/v1/session_pb";
@@ -38,6 +39,8 @@ import { CameraSharing } from "../session/camera_sharing";
 import { Comparisons } from "../session/comparisons";
 import { Exports } from "../session/exports";
 import { ForceQueries } from "../session/force_queries";
+import type { LessonPlace } from "../session/lessons";
+import type { PageView } from "../session/page_view";
 import { Participation, refusalReason } from "../session/participation";
 import { SessionController } from "../session/session_controller";
 import { Studies } from "../session/studies";
@@ -51,6 +54,7 @@ import { stageInsets } from "./insets";
 import { SceneTools } from "./scene_tools";
 import { SecondView } from "./second_view";
 import { shortcuts } from "./shortcuts";
+import { StudentView } from "./student_view";
 import { testHook } from "./test_hook";
 
 /** Update intervals of texts and numbers, and of graphs [ms]. */
@@ -62,6 +66,9 @@ export interface PageTarget {
   sessionId: string;
   /** Id of a session that is shown in a second view beside the first. */
   secondSessionId: string | undefined;
+  view: PageView;
+  /** The lesson and step that are played. */
+  lesson: LessonPlace | undefined;
   /** Reloads the page with this query string. */
   open(query: string): void;
 }
@@ -81,6 +88,7 @@ export class App {
   private readonly tools: SceneTools;
   private readonly graphs: GraphsPanel;
   private readonly secondView: SecondView | undefined;
+  private readonly student: StudentView;
   private readonly margins = new Margins();
   private readonly connectionBadge: ConnectionBadge;
   private readonly viewers = new ViewerCount();
@@ -125,6 +133,7 @@ export class App {
     this.cameraSharing = new CameraSharing(api, sessionId, this.participation, this.viewer.rig, clock);
     this.graphs = new GraphsPanel(() => sessionId, this.tools.trackedVertices);
     this.secondView = this.openSecondView();
+    this.student = this.openStudentView();
     window.phrenic = testHook(() => this.bodies.value, this.frames, this.viewer);
   }
 
@@ -176,11 +185,20 @@ export class App {
     if (secondSessionId === undefined || secondSessionId === sessionId) return undefined;
     const { viewer, frames, tools, layerStyles, controller, presets } = this;
     const mayChange = () => refusalReason(this.participation.roles.value) === "";
-    const primary = { viewer, frames, tools, layerStyles, controller, presets, host: this.viewerHost(), mayChange };
+    const receiveBeside = (frame: Frame) => this.student.receiveBeside(frame);
+    const shared = { viewer, frames, tools, layerStyles, controller, presets };
+    const primary = { ...shared, host: this.viewerHost(), mayChange, receiveBeside };
     return new SecondView(this.api, secondSessionId, primary, this.clock, {
       swap: () => open(`?${new URLSearchParams({ session: secondSessionId, beside: sessionId })}`),
       close: () => open(`?${new URLSearchParams({ session: sessionId })}`),
     });
+  }
+
+  private openStudentView(): StudentView {
+    const { controller, participation, presets, report, tools, layerStyles, secondView } = this;
+    const { open, view, lesson } = this.target;
+    const shown = { tools, layerStyles, secondView, resized: () => this.resize() };
+    return new StudentView({ controller, participation, presets, report, lesson, open, ...shown }, view);
   }
 
   private buildStage(): void {
@@ -253,6 +271,10 @@ export class App {
         { key: "r", description: "Reset", run: press("reset") },
         { key: "g", description: "Graphs", run: graphs },
         { key: "c", description: "Controls", run: panel },
+        { key: "b", description: "Compare with healthy", run: press("compare-healthy") },
+        { key: "e", description: "Student or expert view", run: () => this.student.toggle() },
+        { key: "PageDown", description: "Next step of the lesson", run: () => this.student.moveInLesson(1) },
+        { key: "PageUp", description: "Step before", run: () => this.student.moveInLesson(-1) },
         { key: "h", description: "Whole scene", run: () => viewer.goTo("home") },
         { key: "f", description: "Front view", run: () => viewer.goTo("front") },
         { key: "p", description: "Save a screenshot", run: () => void photograph() },
@@ -281,6 +303,7 @@ export class App {
       frame: (frame) => {
         this.frames.receive(frame, this.clock.now());
         this.graphs.receive(frame);
+        this.student.receive(frame);
         this.tools.receive(frame);
       },
       camera: (camera) => this.cameraSharing.receive(camera),
@@ -301,6 +324,7 @@ export class App {
     const diagram = this.viewer.show(bodies);
     this.layerStyles.start(bodies, report);
     this.tools.start(bodies, this.tissue, diagram);
+    this.student.start();
     elementById("loading").hidden = true;
   }
 
@@ -334,6 +358,7 @@ export class App {
 
   private drawGraphs(): void {
     this.graphs.draw();
+    this.student.draw();
     if (this.timeline.replaying) return;
     const session = this.controller.session.value;
     this.tools.queryForces(`${this.frames.frame?.tick} ${session?.revision}`);

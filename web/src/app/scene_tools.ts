@@ -18,6 +18,7 @@ import { Signal } from "../state/signal";
 import { Annotations } from "../viewer/annotations";
 import type { ViewOrientation } from "../viewer/camera_rig";
 import type { Cut } from "../viewer/clipping";
+import type { ViewName } from "../viewer/named_views";
 import type { OverlayKind } from "../viewer/overlays";
 import type { Viewer } from "../viewer/viewer";
 
@@ -66,12 +67,12 @@ export class SceneTools {
       forceKinds: forces.kinds,
       overlays: this.overlays,
       coloring: this.coloring,
-      setCut: (cut) => {
-        const place = viewer.setCut(cut);
-        this.annotations.setLayers(layerStyles.all.value);
-        this.cut.set(cut);
-        return place;
-      },
+      cut: this.cut,
+      cutAt: (cut) => viewer.cutCoordinate(cut),
+    });
+    this.cut.subscribe((cut) => {
+      viewer.setCut(cut);
+      this.annotations.setLayers(layerStyles.all.value);
     });
     labels.subscribe((on) => this.annotations.setLabels(on));
     layerStyles.all.subscribe((all) => this.annotations.setLayers(all));
@@ -108,6 +109,16 @@ export class SceneTools {
     // A diagram shows which of its edges are rigid.
     if (diagram && bodies.some(({ rigidLinks }) => rigidLinks.length > 0))
       this.overlays.set(new Set([...this.overlays.value, "links"]));
+  }
+
+  /** Shows the outline of the second view's tissue, if that is selected. */
+  showBeside(arrays: FrameArrays | undefined): void {
+    this.ghosts.showBeside(arrays);
+  }
+
+  /** Moves the camera to a named view. */
+  lookFrom(view: ViewName): void {
+    this.viewer.goTo(view);
   }
 
   /** Receives every frame, also those that are not displayed. */

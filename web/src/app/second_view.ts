@@ -8,7 +8,7 @@ import { make } from "../dom/elements";
 import { FrameBuffer, maxWait } from "../frames/frame_buffer";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { type Preset } from "../gen/phrenic/v1/scene_pb";
-import { SessionState } from "../gen/phrenic/v1/session_pb";
+import { type Session, SessionState } from "../gen/phrenic/v1/session_pb";
 import type { Body } from "../geometry/bodies";
 import { ViewHeaders } from "../panels/comparison/view_headers";
 import { ForceQueries, type ForceRequest } from "../session/force_queries";
@@ -34,6 +34,8 @@ export interface PrimaryView {
   host: Pick<ViewerHost, "insets" | "reducedMotion">;
   /** True if this viewer may play and pause the session. */
   mayChange(): boolean;
+  /** Called with every frame of the second session. */
+  receiveBeside(frame: Frame): void;
 }
 
 /**
@@ -56,8 +58,8 @@ export class SecondView {
   private checksOutOfStep = 0;
 
   constructor(
-    api: Api,
-    sessionId: string,
+    private readonly api: Api,
+    private readonly sessionId: string,
     private readonly primary: PrimaryView,
     private readonly clock: Clock,
     actions: { swap(): void; close(): void },
@@ -79,6 +81,18 @@ export class SecondView {
     void this.connection.run();
   }
 
+  /** The second session. */
+  get session(): Signal<Session | undefined> {
+    return this.controller.session;
+  }
+
+  /** Ends the comparison: deletes the second session if it is a temporary copy. */
+  async end(): Promise<void> {
+    if (this.session.value?.temporary !== true) return;
+    // The server deletes a copy that nobody watches by itself, should this call fail.
+    await this.api.sessions.deleteSession({ sessionId: this.sessionId }).catch(() => undefined);
+  }
+
   /** Copies the camera of the primary view. */
   followCamera(): void {
     if (!this.leadsCamera) this.viewer.rig.copyFrom(this.primary.viewer.rig);
@@ -92,6 +106,7 @@ export class SecondView {
   /** Updates the headers; `now` is in ms. */
   updateStatus(primaryFrame: Frame | undefined, now: number): void {
     this.headers.update([primaryFrame, this.frames.replayedFrame ?? this.frames.liveFrame(now)]);
+    this.primary.tools.showBeside(this.frames.displayed?.arrays);
     const [here, there] = [this.primary.frames, this.frames].map(({ frame }) => frame?.time ?? 0);
     this.resynchronise(Math.abs(here - there));
   }
@@ -168,6 +183,7 @@ export class SecondView {
       frame: (frame) => {
         this.frames.receive(frame, this.clock.now());
         this.ghosts.receive(frame);
+        this.primary.receiveBeside(frame);
       },
     };
   }

@@ -4,8 +4,8 @@ import type { Body, FrameArrays } from "../geometry/bodies";
 import type { Signal } from "../state/signal";
 import type { Viewer } from "../viewer/viewer";
 
-/** The state that is drawn as a translucent ghost beside the current one. */
-export type GhostKind = "none" | "rest" | "expiration" | "now";
+/** The state that is drawn as a translucent ghost beside the current one; "beside": that of the second view. */
+export type GhostKind = "none" | "rest" | "expiration" | "now" | "beside";
 
 /** Shows the ghost of one view, of the selected kind. */
 export class GhostSelector {
@@ -30,6 +30,11 @@ export class GhostSelector {
   receive({ breath }: Frame): void {
     const turned = this.endExpiration.receive(breath);
     if (turned && this.kind.value === "expiration") this.viewer.setGhost(this.arrays(), this.deformable);
+  }
+
+  /** Shows the outline of the same bodies in the second view, if that is selected. */
+  showBeside(arrays: FrameArrays | undefined): void {
+    if (this.kind.value === "beside") this.viewer.setGhost(arrays, this.deformable, true);
   }
 
   private show(known = true): void {

@@ -19,6 +19,7 @@ export class LayerStyles {
   mainLayer = "";
   /** Layers that the scene hides and this viewer has not shown yet. */
   private readonly unseen = new Set<string>();
+  private hiddenByScene: ReadonlySet<string> = new Set();
 
   /** Starts another scene with the styles that it defines; layers of opacity 0 are hidden, and opaque once shown. */
   start(bodies: Body[], report: CompileReport): void {
@@ -29,8 +30,14 @@ export class LayerStyles {
     }
     this.unseen.clear();
     for (const { layer, visible } of styles.values()) if (!visible) this.unseen.add(layer);
+    this.hiddenByScene = new Set(this.unseen);
     this.mainLayer = mainLayer(report);
     this.all.set([...styles.values()]);
+  }
+
+  /** True unless the scene hides this layer. */
+  shownByScene(layer: string): boolean {
+    return !this.hiddenByScene.has(layer);
   }
 
   /** Changes some properties of a layer's style. */

@@ -6,6 +6,10 @@ export interface Curve {
   key: string;
   name: string;
   factor: number;
+  /** Place of its colour in the palette; not set: its place among the curves. */
+  order?: number;
+  /** True for a dashed line. */
+  dashed?: boolean;
 }
 
 /** A graph that a scene offers: curves over time, or one curve over another. */

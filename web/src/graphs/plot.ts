@@ -14,8 +14,10 @@ export interface PlotEvents {
   cursor(place: number | undefined): void;
 }
 
-const faint = "#b6c0ca";
-const grid = { stroke: "#2a323b", width: 1 };
+/** Returns a colour of the style sheet as it is now. */
+const styled = (name: string) => () => getComputedStyle(document.documentElement).getPropertyValue(name);
+const faint = styled("--faint");
+const grid = { stroke: styled("--line"), width: 1 };
 const font = "11px system-ui, sans-serif";
 const plotHeight = 104;
 
@@ -72,7 +74,15 @@ export class Plot {
         { range: () => [this.span.start, this.span.end] },
         { range: () => valueRange(this.data.curves, minimumRange(this.spec.unit)) },
       ),
-      series: [{}, ...curves.map((_, i) => ({ stroke: curveColor(i), width: 1.6, points: { show: false } }))],
+      series: [
+        {},
+        ...curves.map(({ order, dashed }, i) => ({
+          stroke: () => curveColor(order ?? i),
+          width: 1.6,
+          dash: dashed === true ? [5, 4] : [],
+          points: { show: false },
+        })),
+      ],
       cursor: { y: false, sync: { key: "phrenic" }, drag: { x: true, setScale: false }, points: { size: 6 } },
       hooks: {
         setSelect: [(plot) => this.select(plot)],
@@ -130,5 +140,5 @@ export class Plot {
 
 /** Smallest vertical range of a graph: smaller changes are rounding errors. */
 function minimumRange(unit: string): number {
-  return { l: 0.01, "l/s": 0.01, Pa: 1, mm: 0.1, "": 0.1 }[unit] ?? 1e-9;
+  return { l: 0.01, "l/s": 0.01, Pa: 1, mm: 0.1, "cmH₂O": 0.1, "": 0.1 }[unit] ?? 1e-9;
 }

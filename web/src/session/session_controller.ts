@@ -11,7 +11,8 @@ import type { Clock } from "../timing/clock";
 import { CoalescingSender } from "../timing/coalescing_sender";
 
 type PullValues = MessageInitShape<typeof PullSchema>;
-type ParameterValues = Omit<MessageInitShape<typeof ParametersSchema>, "$typeName">;
+/** Some live parameters. */
+export type ParameterValues = Omit<MessageInitShape<typeof ParametersSchema>, "$typeName">;
 
 /** Playback speed: simulated seconds per second, or as fast as possible. */
 export type Speed = number | "fastest";
@@ -102,10 +103,16 @@ export class SessionController {
 
   /** Sets a parameter and records the change for undo; rapid changes are merged. */
   set(name: ParameterName, value: number | boolean): void {
-    const before = this.session.value?.parameters?.[name];
-    if (before !== undefined && before !== value)
-      this.changes.record({ [name]: before }, { [name]: value }, this.clock.now());
-    this.updates.push({ [name]: value });
+    this.setTogether({ [name]: value });
+  }
+
+  /** Sets parameters that one control changes together; they are undone together. */
+  setTogether(values: Values): void {
+    const known = { ...this.session.value?.parameters } as unknown as Values;
+    const names = Object.keys(values).filter((name) => known[name] !== undefined && known[name] !== values[name]);
+    const part = (of: Values) => Object.fromEntries(names.map((name) => [name, of[name]]));
+    if (names.length > 0) this.changes.record(part(known), part(values), this.clock.now());
+    this.updates.push(values);
   }
 
   /** Reverts the last change of this viewer. */
@@ -150,9 +157,9 @@ export class SessionController {
     return this.updates.pending(name);
   }
 
-  /** Sets the parameters of one of the scene's presets. */
-  usePreset(preset: string): Promise<void> {
-    return this.recordChange(() => this.send({}, preset));
+  /** Sets the parameters of one of the scene's presets; `overrides` take precedence over them. */
+  usePreset(preset: string, overrides: ParameterValues = {}): Promise<void> {
+    return this.recordChange(() => this.send(overrides, preset));
   }
 
   /**

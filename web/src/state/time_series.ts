@@ -44,3 +44,14 @@ export class TimeSeries {
     for (const values of this.series.values()) values.splice(0, count);
   }
 }
+
+/** Returns a value at a time within a series, interpolated linearly. */
+export function valueAt(history: TimeSeries, key: string, time: number): number {
+  const { times } = history;
+  const values = history.series.get(key) ?? [];
+  const next = history.indexAt(time);
+  if (next <= 0) return values[0];
+  if (next >= times.length) return values[values.length - 1];
+  const part = (time - times[next - 1]) / (times[next] - times[next - 1]);
+  return values[next - 1] + part * (values[next] - values[next - 1]);
+}

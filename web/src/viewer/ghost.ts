@@ -23,13 +23,13 @@ export class TranslucentSurfaces {
     this.object.add(translucentMesh(positions, triangles, this.colors));
   }
 
-  /** Shows the streamed ones of `bodies`; at rest if `arrays` is undefined. */
-  show(bodies: Body[], arrays: FrameArrays | undefined): void {
+  /** Shows the streamed ones of `bodies`; at rest if `arrays` is undefined. An outline covers no colours. */
+  show(bodies: Body[], arrays: FrameArrays | undefined, outline = false): void {
     this.clear();
     for (const body of bodies) {
       if (body.placement !== Placement.STREAMED || body.triangles.length === 0) continue;
       const positions = arrays === undefined ? body.rest : positionsOf(body, arrays).slice();
-      this.object.add(translucentMesh(positions, body.triangles, this.colors));
+      this.object.add(translucentMesh(positions, body.triangles, this.colors, outline));
     }
   }
 
@@ -44,8 +44,8 @@ export class TranslucentSurfaces {
   }
 }
 
-/** A mesh that is denser at its silhouette and clearer where it faces the camera. */
-function translucentMesh(positions: Float32Array, triangles: Uint32Array, colors: Colors): THREE.Mesh {
+/** A mesh that is denser at its silhouette and clearer where it faces the camera; an outline is invisible there. */
+function translucentMesh(positions: Float32Array, triangles: Uint32Array, colors: Colors, outline = false): THREE.Mesh {
   const normals = new Float32Array(positions.length);
   computeNormals(positions, triangles, normals);
   const geometry = new THREE.BufferGeometry()
@@ -59,10 +59,13 @@ function translucentMesh(positions: Float32Array, triangles: Uint32Array, colors
     depthWrite: false,
     side: THREE.DoubleSide,
   });
+  const density = outline ? "3.0 * pow(1.0 - facing, 4.0)" : "mix(2.6, 0.45, facing)";
+  material.customProgramCacheKey = () => density;
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader.replace(
       "#include <opaque_fragment>",
-      `diffuseColor.a *= mix(2.6, 0.45, abs(dot(normalize(vNormal), normalize(vViewPosition))));
+      `float facing = abs(dot(normalize(vNormal), normalize(vViewPosition)));
+       diffuseColor.a *= ${density};
        #include <opaque_fragment>`,
     );
   };

@@ -141,19 +141,23 @@ export class Viewer {
     this.refresh();
   }
 
-  /** Clips one side of a plane. Returns its coordinate along its axis [m]. */
-  setCut(cut: Cut): number {
+  /** Clips one side of a plane. */
+  setCut(cut: Cut): void {
     this.cut = cut;
     const plane = this.currentPlane();
     this.renderer.clippingPlanes = plane === undefined ? [] : [plane];
     this.refresh();
+  }
+
+  /** Returns the coordinate of a cut along its axis [m]. */
+  cutCoordinate(cut: Cut): number {
     return planeCoordinate(cut, this.box);
   }
 
-  /** Shows bodies as a ghost, in the state of `arrays` or at rest; undefined removes it. */
-  setGhost(of: FrameArrays | "rest" | undefined, bodies: Body[]): void {
+  /** Shows bodies as a ghost or its outline, in the state of `arrays` or at rest; undefined removes it. */
+  setGhost(of: FrameArrays | "rest" | undefined, bodies: Body[], outline = false): void {
     if (of === undefined) this.ghost.clear();
-    else this.ghost.show(bodies, of === "rest" ? undefined : of);
+    else this.ghost.show(bodies, of === "rest" ? undefined : of, outline);
     this.refresh();
   }
 

@@ -1,6 +1,6 @@
 import { download } from "../../dom/download";
 import { make } from "../../dom/elements";
-import type { GraphSpec } from "../../graphs/catalogue";
+import type { Curve, GraphSpec } from "../../graphs/catalogue";
 import { curveColor } from "../../graphs/colors";
 import { toCsv, toSvg } from "../../graphs/files";
 import { Plot, type PlotEvents } from "../../graphs/plot";
@@ -22,7 +22,7 @@ export class GraphTile {
   ) {
     this.plot = new Plot(spec, events);
     this.readings = spec.curves.map(() => make("b"));
-    const keys = spec.curves.map(({ name }, i) => this.key(name, i));
+    const keys = spec.curves.map((curve, i) => this.key(curve, i));
     const save = ["SVG", "CSV"].map((kind) => this.saveButton(kind as "SVG" | "CSV"));
     // A single curve needs no legend.
     const alone = keys.length === 1;
@@ -55,10 +55,10 @@ export class GraphTile {
     return unit === "" ? title : `${title} [${unit}]`;
   }
 
-  private key(name: string, order: number): HTMLElement {
-    const swatch = make("span", { className: "swatch" });
-    swatch.style.backgroundColor = curveColor(order);
-    return make("span", { className: "key" }, swatch, make("span", {}, name), this.readings[order]);
+  private key({ name, order, dashed }: Curve, place: number): HTMLElement {
+    const swatch = make("span", { className: dashed === true ? "swatch dashed" : "swatch" });
+    swatch.style.color = curveColor(order ?? place);
+    return make("span", { className: "key" }, swatch, make("span", {}, name), this.readings[place]);
   }
 
   private saveButton(kind: "SVG" | "CSV"): HTMLElement {

@@ -1,5 +1,6 @@
 import { make } from "../../dom/elements";
 import type { CompileReport } from "../../gen/phrenic/v1/report_pb";
+import { withPageView } from "../../session/page_view";
 import { permalinkOf } from "../../session/permalink";
 import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
@@ -17,6 +18,7 @@ export interface Sharing {
 export class ShareDialog {
   readonly element = make("dialog", { className: "chooser", id: "share", ariaLabel: "Share and copy" });
   private readonly session = linkRow("share-session", "This session, for others to join");
+  private readonly forClass = linkRow("share-class", "For a class: plain words and few controls");
   private readonly frame = linkRow("share-embed", "HTML to embed the view in another page");
   private readonly permalink = linkRow("share-permalink", "This state, simulated again when the link is opened");
 
@@ -27,6 +29,7 @@ export class ShareDialog {
     this.element.append(
       make("header", {}, make("h2", {}, "Share"), close),
       this.session.row,
+      this.forClass.row,
       this.permalink.row,
       make("p", { className: "faint" }, rerunWords),
       this.frame.row,
@@ -42,6 +45,7 @@ export class ShareDialog {
     const session = controller.session.value;
     const base = `${location.origin}${location.pathname}`;
     this.session.entry.value = `${base}?${new URLSearchParams({ session: controller.sessionId })}`;
+    this.forClass.entry.value = base + withPageView(new URL(this.session.entry.value).search, "student");
     const embedded = `${base}?${new URLSearchParams({ session: controller.sessionId })}&amp;embed`;
     this.frame.entry.value = `<iframe src="${embedded}" width="720" height="540" title="Phrenic"></iframe>`;
     if (session !== undefined) this.permalink.entry.value = base + permalinkOf(session, report.value?.sceneHash ?? "");

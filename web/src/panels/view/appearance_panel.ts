@@ -18,7 +18,9 @@ export interface AppearanceSettings {
   coloring: Coloring;
   labels: Signal<boolean>;
   forceKinds: Signal<string[]>;
-  setCut(cut: Cut): number;
+  cut: Signal<Cut>;
+  /** Returns the position of a cut along its axis [m]. */
+  cutAt(cut: Cut): number;
   ghost: Signal<GhostKind>;
 }
 
@@ -34,6 +36,7 @@ const ghosts: [GhostKind, string][] = [
   ["rest", "At rest"],
   ["expiration", "At the end of expiration"],
   ["now", "Current state"],
+  ["beside", "The second view"],
 ];
 
 /** A panel for colours, transparency, clipping, ghost, overlays and labels. */
@@ -43,7 +46,7 @@ export function appearancePanel(view: AppearanceSettings): HTMLElement {
   const labels = switchRow("Show names", "Names of the layers.", (on) => view.labels.set(on));
   labels.input.id = "show-labels";
   const rows = overlayRows.map(([kind, label, help]) => overlayRow(kind, label, help, view.overlays));
-  const cut = cutRows((value) => view.setCut(value));
+  const cut = cutRows(view.cut, view.cutAt);
   return section(
     "View",
     true,
@@ -66,6 +69,7 @@ function coloringRow(coloring: Coloring, kinds: Signal<string[]>): HTMLElement {
   const row = choice("coloring-kind", "Colour by", help, options, (kind) =>
     coloring.choose(kind === "own" ? undefined : kind),
   );
+  coloring.field.subscribe((kind) => (row.querySelector("select")!.value = kind ?? "own"));
   // The available kinds of force are known later, and change when a vertex is pulled.
   const group = make("optgroup", { label: "Force" });
   row.querySelector("select")?.append(group);

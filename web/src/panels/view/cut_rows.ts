@@ -1,6 +1,6 @@
 import { make } from "../../dom/elements";
 import { labelledRow, switchRow } from "../../dom/rows";
-import { Signal } from "../../state/signal";
+import type { Signal } from "../../state/signal";
 import type { Cut, CutKind } from "../../viewer/clipping";
 
 const kinds: [CutKind, string][] = [
@@ -10,9 +10,8 @@ const kinds: [CutKind, string][] = [
   ["transverse", "Transverse"],
 ];
 
-/** Rows for a clipping plane: orientation, position and side. `cutAt` applies it and returns its position [m]. */
-export function cutRows(cutAt: (cut: Cut) => number): HTMLElement[] {
-  const cut = new Signal<Cut>({ kind: "none", fraction: 0.5, flipped: false });
+/** Rows for a clipping plane: orientation, position and side. `cutAt` returns its position [m]. */
+export function cutRows(cut: Signal<Cut>, cutAt: (cut: Cut) => number): HTMLElement[] {
   const list = make("select", { id: "cut", title: "Clip one side of a plane" });
   list.append(...kinds.map(([value, label]) => make("option", { value }, label)));
   list.onchange = () => cut.set({ ...cut.value, kind: list.value as CutKind });
@@ -25,6 +24,8 @@ export function cutRows(cutAt: (cut: Cut) => number): HTMLElement[] {
   const position = make("div", { className: "number-row plain" }, label, output, slider);
   cut.subscribe((value) => {
     position.hidden = flip.row.hidden = value.kind === "none";
+    list.value = value.kind;
+    flip.input.checked = value.flipped;
     slider.value = String(value.fraction);
     slider.style.setProperty("--filled", `${100 * value.fraction}%`);
     output.textContent = `${Math.round(1000 * cutAt(value))} mm`;

@@ -1,0 +1,233 @@
+// `phrenic register` and `phrenic fit`: a scene's lungs moved onto a person's, and the person's breath, in this
+// process.
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "absl/strings/str_cat.h"
+#include "client/cli/argument_kinds.h"
+#include "client/cli/shared_options.h"
+#include "client/commands/commands.h"
+#include "client/connection/errors.h"
+#include "client/files/motion_vectors.h"
+#include "client/files/scene_lungs.h"
+#include "client/files/whole_file.h"
+#include "client/print/motion_fit.h"
+#include "client/terminal/progress.h"
+#include "server/fit/motion_fit.h"
+#include "server/fit/read_landmarks.h"
+#include "server/meshio/meshio.h"
+#include "server/service/calls/status.h"
+
+namespace phrenic::client {
+namespace {
+
+struct RegisterOptions {
+  SceneOptions scene;
+  std::vector<std::string> exhale;
+  std::string data_dir, out;  // empty out: no files
+};
+
+struct FitCommandOptions {
+  SceneOptions scene;
+  std::vector<std::string> landmarks, exhale;
+  std::optional<double> descent, tidal_volume;  // [mm], [l]
+  fit::FitOptions fit;
+  std::string data_dir, residuals, expected;  // files; empty: none
+};
+
+int FailFit(const Context& context, const absl::Status& status) { return Fail(context, service::ToGrpc(status)); }
+
+// Writes the registered lungs as surfaces.
+absl::Status WriteLungs(const std::string& folder, const fit::LungTemplates& templates,
+                        const fit::RegisteredLungs& registered) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  for (const fit::Side side : {fit::kRight, fit::kLeft}) {
+    const std::string file = absl::StrCat(folder, side == fit::kLeft ? "/lung-left.obj" : "/lung-right.obj");
+    const auto bytes = meshio::Write(file, registered.lungs[side].Apply(templates[side].surface()), 0.001);
+    if (!bytes.ok()) return bytes.status();
+    if (absl::Status status = WriteWhole(file, *bytes); !status.ok()) return status;
+    std::cerr << "wrote " << file << "\n";
+  }
+  return absl::OkStatus();
+}
+
+int RegisterPerson(const Context& context, const RegisterOptions& options) {
+  const auto points = fit::ReadLandmarks(options.exhale);
+  if (!points.ok()) return Fail(points.status());
+  const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
+  if (!scene.ok()) return Fail(scene.status());
+  const auto templates = ReadSceneLungs(*scene, options.data_dir);
+  if (!templates.ok()) return FailFit(context, templates.status());
+  const auto registered = WithProgress("registering", [&] { return fit::RegisterLungs(*templates, points->exhale); });
+  if (!registered.ok()) return FailFit(context, registered.status());
+  PrintDoubts(*registered);
+  if (context.json()) {
+    std::cout << RegistrationJson(*registered).dump(1) << "\n";
+  } else if (context.output == Output::kCsv) {
+    PrintRegistrationCsv(*registered);
+  } else {
+    PrintRegistration(*registered);
+  }
+  if (options.out.empty()) return kOk;
+  const absl::Status written = WriteLungs(options.out, *templates, *registered);
+  return written.ok() ? kOk : Fail(written);
+}
+
+// Returns what is wrong with the combination of options; empty if nothing is.
+std::string FitUsageFault(const FitCommandOptions& options) {
+  const bool number = options.descent || options.tidal_volume;
+  if (options.landmarks.empty() == options.exhale.empty()) {
+    return "give --landmarks with pairs, or --exhale with one number: --descent or --tidal-volume";
+  }
+  if (!options.landmarks.empty() && number) return "--descent and --tidal-volume belong to --exhale";
+  if (!options.exhale.empty() && options.descent.has_value() == options.tidal_volume.has_value()) {
+    return "--exhale needs one number: --descent or --tidal-volume";
+  }
+  if (!options.landmarks.empty() && !options.expected.empty()) return "--expected belongs to --exhale";
+  const bool fitting = !options.residuals.empty() || options.fit.assimilate;
+  if (!options.exhale.empty() && fitting) return "--residuals and --assimilate belong to --landmarks";
+  return "";
+}
+
+int FitLandmarks(const Context& context, const FitCommandOptions& options) {
+  const auto landmarks = fit::ReadLandmarks(options.landmarks);
+  if (!landmarks.ok()) return Fail(landmarks.status());
+  const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
+  if (!scene.ok()) return Fail(scene.status());
+  const auto templates = ReadSceneLungs(*scene, options.data_dir);
+  if (!templates.ok()) return FailFit(context, templates.status());
+  absl::StatusOr<fit::MotionFit> found = absl::UnknownError("");
+  {
+    Progress progress("fitting " + options.scene.scene, 1);
+    found = fit::FitMotion(*templates, *landmarks, options.fit, [&](double done, std::string_view stage) {
+      progress.SetDetail(std::string(stage));
+      progress.Update(done);
+      return !context.interruption->happened();
+    });
+  }
+  if (!found.ok()) return FailFit(context, found.status());
+  PrintDoubts(found->registered);
+  if (context.json()) {
+    std::cout << FitJson(*found, options.fit).dump(1) << "\n";
+  } else if (context.output == Output::kCsv) {
+    PrintFitCsv(*found);
+  } else {
+    PrintFit(*found, options.fit);
+  }
+  if (options.residuals.empty()) return kOk;
+  if (const absl::Status status = WriteResiduals(options.residuals, *found); !status.ok()) return Fail(status);
+  std::cerr << "wrote " << options.residuals << "\n";
+  return kOk;
+}
+
+// Predicts the motion of the points, each number of the prior varying independently.
+absl::StatusOr<Expected> Expect(const fit::Person& person, const fit::PeopleMotion& people,
+                                const FitCommandOptions& options) {
+  Expected expected;
+  expected.amplitudes = person.amplitudes();
+  expected.people = people.people;
+  if (options.descent) {
+    expected.prediction = fit::PredictFromDescent(person, people, *options.descent / 1000);
+    return expected;
+  }
+  const auto prediction = fit::PredictFromVolume(person, people, *options.tidal_volume / 1000);
+  if (!prediction.ok()) return prediction.status();
+  expected.prediction = *prediction;
+  return expected;
+}
+
+int PrintAndWriteExpected(const Context& context, const FitCommandOptions& options, const fit::Person& person,
+                          const Points& exhale, Expected expected) {
+  const fit::MotionBand band = fit::BandAt(person, expected.prediction, exhale);
+  expected.regions = fit::BandByRegion(person, exhale, band);
+  if (context.json()) {
+    std::cout << ExpectedJson(expected).dump(1) << "\n";
+  } else if (context.output == Output::kCsv) {
+    PrintExpectedCsv(expected);
+  } else {
+    PrintExpected(expected);
+  }
+  if (options.expected.empty()) return kOk;
+  const absl::Status status = WriteExpected(options.expected, exhale, band.motion, band.spread);
+  if (!status.ok()) return Fail(status);
+  std::cerr << "wrote " << options.expected << "\n";
+  return kOk;
+}
+
+int FitOneNumber(const Context& context, const FitCommandOptions& options) {
+  const auto points = fit::ReadLandmarks(options.exhale);
+  if (!points.ok()) return Fail(points.status());
+  const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
+  if (!scene.ok()) return Fail(scene.status());
+  const auto templates = ReadSceneLungs(*scene, options.data_dir);
+  if (!templates.ok()) return FailFit(context, templates.status());
+  const auto registered = fit::RegisterLungs(*templates, points->exhale);
+  if (!registered.ok()) return FailFit(context, registered.status());
+  PrintDoubts(*registered);
+  const auto person = WithProgress("solving", [&] {
+    return fit::Person::Make(*templates, *registered, fit::BreathAmplitudes(options.fit.numbers),
+                             options.fit.elasticity, [&] { return context.interruption->happened(); });
+  });
+  if (!person.ok()) return FailFit(context, person.status());
+  auto expected = Expect(*person, fit::ShippedPeople(options.fit.numbers), options);
+  if (!expected.ok()) return FailFit(context, expected.status());
+  return PrintAndWriteExpected(context, options, *person, points->exhale, *std::move(expected));
+}
+
+int FitPerson(const Context& context, const FitCommandOptions& options) {
+  if (const std::string fault = FitUsageFault(options); !fault.empty()) {
+    Fail(absl::InvalidArgumentError(fault));
+    return kUsage;
+  }
+  return options.landmarks.empty() ? FitOneNumber(context, options) : FitLandmarks(context, options);
+}
+
+void AddExhale(CLI::App& command, std::vector<std::string>& files, bool required) {
+  CLI::Option* option = command.add_option(
+      "--exhale", files, "points in the lungs at end exhale (.csv with x,y,z, .fcsv, .mrk.json) [mm, LPS]");
+  option->expected(1)->required(required);
+}
+
+void AddFiles(CLI::App& command, FitCommandOptions& options) {
+  command
+      .add_option("--landmarks", options.landmarks,
+                  "landmark pairs of end exhale and end inhale: one .csv, or two files of points (.fcsv, .mrk.json)")
+      ->expected(1, 2)
+      ->allow_extra_args(false);
+  AddExhale(command, options.exhale, false);
+  command.add_option("--residuals", options.residuals, "write measured, predicted and residual vectors (.csv, .vtp)");
+  command.add_option("--expected", options.expected,
+                     "write the expected motion of the points and its spread (.csv, .vtp)");
+}
+
+}  // namespace
+
+CommandFunction SetUpRegister(CLI::App& command) {
+  const auto options = std::make_shared<RegisterOptions>();
+  AddScene(command, options->scene);
+  AddExhale(command, options->exhale, true);
+  AddDataFolder(command, options->data_dir);
+  command.add_option("--out", options->out, "write the person's lungs to this folder (lung-right.obj, lung-left.obj)");
+  return Bind(&RegisterPerson, options);
+}
+
+CommandFunction SetUpFit(CLI::App& command) {
+  const auto options = std::make_shared<FitCommandOptions>();
+  AddScene(command, options->scene);
+  AddFiles(command, *options);
+  command.add_option("--descent", options->descent, "motion of the lungs' lowest fifth downwards [mm], with --exhale")
+      ->check(NumberIn(0, 150));
+  command.add_option("--tidal-volume", options->tidal_volume, "change of the lungs' volume [l], with --exhale")
+      ->check(NumberIn(0, 8));
+  command.add_option("--modes", options->fit.numbers, "numbers that a breath is made of")->capture_default_str();
+  command.add_option("--split", options->fit.split, "seed of the random half that is fitted")->capture_default_str();
+  command.add_flag("--assimilate", options->fit.assimilate,
+                   "add the smallest elastic deformation through the fitting half");
+  AddDataFolder(command, options->data_dir);
+  return Bind(&FitPerson, options);
+}
+
+}  // namespace phrenic::client

@@ -1,0 +1,232 @@
+// `phrenic lungs`: how lung tissue moves in a scene's breaths, in this process; its field as a file.
+#include <cmath>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/cli/argument_kinds.h"
+#include "client/cli/shared_options.h"
+#include "client/commands/commands.h"
+#include "client/connection/errors.h"
+#include "client/files/whole_file.h"
+#include "client/print/table.h"
+#include "client/terminal/progress.h"
+#include "server/imaging/gzip.h"
+#include "server/imaging/nifti_vectors.h"
+#include "server/mechanics/compile/presets.h"
+#include "server/mesh/units.h"
+#include "server/physiology/lung_breath.h"
+#include "server/schema/places.h"
+#include "server/service/calls/status.h"
+#include "server/session/models.h"
+#include "server/vtk/image_data.h"
+
+namespace phrenic::client {
+namespace {
+
+using physiology::LungReading;
+
+struct LungsOptions {
+  SceneOptions scene;
+  std::vector<std::string> presets;  // empty: the scene's own parameters
+  std::vector<std::string> settings;
+  bool glued = false;
+  double edge_mm = LungElasticity().edge * kMillimetresAMetre, spacing_mm = 4;
+  std::string data_dir, field;  // empty field: no file
+};
+
+// The readings of one breath.
+struct LungsOfBreath {
+  std::string preset;
+  double air = 0;  // that the lungs gain, by the scene's pressures [m^3]; NaN without them
+  std::vector<LungReading> lungs;
+};
+
+constexpr std::pair<physiology::LungRegion, const char*> kRegions[] = {
+    {physiology::kLungBase, "base"}, {physiology::kLungMiddle, "middle"}, {physiology::kLungApex, "apex"},
+    {physiology::kLungBack, "back"}, {physiology::kLungFront, "front"},
+};
+
+absl::Status CheckField(const LungsOptions& options) {
+  if (options.field.empty()) return absl::OkStatus();
+  if (options.presets.size() > 1) {
+    return absl::InvalidArgumentError("--field holds one breath: give one --preset with it");
+  }
+  for (const char* ending : {".vti", ".nii", ".nii.gz"}) {
+    if (absl::EndsWith(options.field, ending)) return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("--field ", options.field, ": the formats are .vti, .nii and .nii.gz"));
+}
+
+absl::StatusOr<std::shared_ptr<const Model>> CompileLungs(const Context& context, const LungsOptions& options) {
+  const absl::StatusOr<v1::SceneSource> source = ReadScene(options.scene);
+  if (!source.ok()) return source.status();
+  std::vector<std::string> folders = {Installed("scenes", PHRENIC_SCENES_DIR)};
+  if (!options.data_dir.empty()) folders.push_back(options.data_dir + "/scenes");
+  session::Models models(session::SceneCatalogue(folders), options.data_dir, 1, nullptr, {},
+                         session::MeshCache(session::DefaultCacheFolder()));
+  const Progress compiling("compiling " + options.scene.scene);
+  return models.Get(*source, {.cancelled = [&context] { return context.interruption->happened(); }});
+}
+
+absl::StatusOr<v1::Parameters> LungParameters(const Model& model, const std::string& preset,
+                                              const v1::Parameters& settings) {
+  const absl::StatusOr<v1::Parameters> found = FindPreset(model.scene, preset);
+  if (!found.ok()) return found.status();
+  v1::Parameters parameters = model.parameters;
+  parameters.MergeFrom(*found);
+  parameters.MergeFrom(settings);
+  return parameters;
+}
+
+absl::StatusOr<physiology::Recording> Breathe(const Context& context, const physiology::Subject& subject,
+                                              const std::string& preset, const v1::Parameters& parameters) {
+  Progress progress("breathing " + (preset.empty() ? subject.model.scene.name() : preset));
+  auto breath = physiology::Record(
+      subject, preset, parameters, [&](double) { return !context.interruption->happened(); },
+      physiology::FlawSearch::kNever);
+  if (!breath.ok() || breath->problem.empty()) return breath;
+  return absl::FailedPreconditionError(absl::StrCat(preset, ": ", breath->problem));
+}
+
+absl::Status WriteField(const std::vector<LungMotion>& motions, const LungsOptions& options) {
+  const absl::StatusOr<LungField> sampled = SampleLungs(motions, options.spacing_mm / kMillimetresAMetre);
+  if (!sampled.ok()) return sampled.status();
+  const LungField& field = *sampled;
+  const Eigen::Vector3d origin = kMillimetresAMetre * field.origin;
+  const Points displacement = kMillimetresAMetre * field.displacement;
+  std::string bytes;
+  if (absl::EndsWith(options.field, ".vti")) {
+    const Eigen::Map<const Eigen::Matrix<std::uint8_t, 1, Eigen::Dynamic>> lung(
+        field.lung.data(), static_cast<Eigen::Index>(field.lung.size()));
+    bytes = WriteVti({field.size,
+                      origin,
+                      Eigen::Vector3d::Constant(options.spacing_mm),
+                      {{"ventilation", field.ventilation.transpose().cast<float>()},
+                       {"displacement", displacement.cast<float>()},
+                       {"lung", lung.cast<float>()}}});
+  } else {
+    const Eigen::Affine3d to_patient = Eigen::Translation3d(origin) * Eigen::Scaling(options.spacing_mm);
+    bytes = imaging::WriteNiftiVectors(field.size, to_patient, displacement);
+    if (absl::EndsWith(options.field, ".gz")) bytes = imaging::Deflate(bytes);
+  }
+  if (absl::Status status = WriteWhole(options.field, bytes); !status.ok()) return status;
+  std::cerr << "wrote " << options.field << "\n";
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::vector<LungsOfBreath>> ReadBreaths(const Context& context, const LungsOptions& options) {
+  const absl::StatusOr<v1::Parameters> settings = ReadSettings(options.settings);
+  if (!settings.ok()) return settings.status();
+  const auto model = CompileLungs(context, options);
+  if (!model.ok()) return model.status();
+  const auto subject = physiology::Subject::Of(**model);
+  if (!subject.ok()) return subject.status();
+  LungElasticity elasticity = {.edge = options.edge_mm / kMillimetresAMetre};
+  if (options.glued) elasticity.tangential = elasticity.contact;
+  const auto lungs = physiology::BreathingLungs::Make(**subject, elasticity);
+  if (!lungs.ok()) return lungs.status();
+  std::vector<LungsOfBreath> breaths;
+  const auto presets = options.presets.empty() ? std::vector<std::string>{""} : options.presets;
+  for (const std::string& preset : presets) {
+    const auto parameters = LungParameters(**model, preset, *settings);
+    if (!parameters.ok()) return parameters.status();
+    const auto breath = Breathe(context, **subject, preset, *parameters);
+    if (!breath.ok()) return breath.status();
+    const std::vector<LungMotion> motions = lungs->Motions(*breath, *parameters);
+    const std::vector<double>& volume = breath->of[physiology::kVolume];
+    breaths.push_back({preset, volume[breath->peak_sample] - volume.front(), lungs->Readings(motions)});
+    if (options.field.empty()) continue;
+    if (absl::Status status = WriteField(motions, options); !status.ok()) return status;
+  }
+  return breaths;
+}
+
+// Prints the readings as a table: millimetres, millilitres, per cent of the volume at rest.
+void PrintLungs(const Context& context, const std::vector<LungsOfBreath>& breaths) {
+  Table table({"preset", "lung", "volume ml", "base mm", "middle mm", "apex mm", "back/front", "up %", "base %",
+               "middle %", "apex %", "back %", "front %"});
+  for (const LungsOfBreath& breath : breaths) {
+    for (const LungReading& lung : breath.lungs) {
+      std::vector<std::string> row = {breath.preset.empty() ? "-" : breath.preset, lung.lung,
+                                      absl::StrFormat("%.0f", 1e6 * lung.volume)};
+      for (int r = physiology::kLungBase; r <= physiology::kLungApex; ++r) {
+        row.push_back(absl::StrFormat("%.1f", kMillimetresAMetre * lung.caudal[r]));
+      }
+      row.push_back(std::isnan(lung.back_over_front) ? "-" : absl::StrFormat("%.2f", lung.back_over_front));
+      row.push_back(absl::StrFormat("%.0f", 100 * lung.upwards));
+      for (const auto& [region, name] : kRegions) row.push_back(absl::StrFormat("%.1f", 100 * lung.gained[region]));
+      table.Add(row);
+    }
+  }
+  if (context.output == Output::kCsv) return table.PrintCsv(std::cout);
+  table.Print(std::cout);
+  std::cout << "\nmm: mean descent; %: volume gained, of that at rest. Thirds of the height, and of the depth.\n";
+  for (const LungsOfBreath& breath : breaths) {
+    double tissue = 0;
+    for (const LungReading& lung : breath.lungs) tissue += lung.volume;
+    std::cout << absl::StrFormat("%s: the tissue gains %.0f ml, the lungs %.0f ml of air\n",
+                                 breath.preset.empty() ? "breath" : breath.preset, 1e6 * tissue, 1e6 * breath.air);
+  }
+}
+
+void PrintLungsJson(const std::vector<LungsOfBreath>& breaths) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const LungsOfBreath& breath : breaths) {
+    nlohmann::json lungs = nlohmann::json::array();
+    for (const LungReading& lung : breath.lungs) {
+      nlohmann::json caudal, gained;
+      for (const auto& [region, name] : kRegions) {
+        caudal[name] = kMillimetresAMetre * lung.caudal[region];
+        gained[name] = lung.gained[region];
+      }
+      lungs.push_back({{"lung", lung.lung},
+                       {"volume_ml", 1e6 * lung.volume},
+                       {"descent_mm", caudal},
+                       {"ventilation", gained},
+                       {"back_over_front", lung.back_over_front},
+                       {"upwards", lung.upwards}});
+    }
+    json.push_back({{"preset", breath.preset}, {"air_ml", 1e6 * breath.air}, {"lungs", lungs}});
+  }
+  std::cout << json.dump(1) << "\n";
+}
+
+int Lungs(const Context& context, const LungsOptions& options) {
+  if (absl::Status status = CheckField(options); !status.ok()) {
+    Fail(status);
+    return kUsage;
+  }
+  const auto breaths = ReadBreaths(context, options);
+  if (!breaths.ok()) return Fail(context, service::ToGrpc(breaths.status()));
+  context.json() ? PrintLungsJson(*breaths) : PrintLungs(context, *breaths);
+  return kOk;
+}
+
+}  // namespace
+
+CommandFunction SetUpLungs(CLI::App& command) {
+  const auto options = std::make_shared<LungsOptions>();
+  AddScene(command, options->scene);
+  command
+      .add_option("--preset", options->presets, "a preset of the scene; may be repeated (the scene's own parameters)")
+      ->allow_extra_args(false);
+  AddParameters(command, options->settings);
+  command.add_option("--field", options->field,
+                     "write displacement [mm, LPS] and ventilation at the peak of the breath to this file: .vti, or "
+                     ".nii and .nii.gz (displacement alone, as ITK and ANTs read it)");
+  command.add_option("--spacing", options->spacing_mm, "distance of the field's points [mm]")
+      ->check(NumberIn(0.5, 50))
+      ->capture_default_str();
+  command.add_option("--brick", options->edge_mm, "edge of the bricks of tissue [mm]")
+      ->check(NumberIn(5, 50))
+      ->capture_default_str();
+  command.add_flag("--glued", options->glued, "glue the lungs to what surrounds them, for comparison: they slide");
+  AddDataFolder(command, options->data_dir);
+  return Bind(&Lungs, options);
+}
+
+}  // namespace phrenic::client

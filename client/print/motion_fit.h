@@ -1,0 +1,42 @@
+// Fits of people's breaths as tables, JSON and CSV. Lengths are in mm.
+#ifndef PHRENIC_CLIENT_PRINT_MOTION_FIT_H_
+#define PHRENIC_CLIENT_PRINT_MOTION_FIT_H_
+
+#include <nlohmann/json.hpp>
+
+#include "client/connection/context.h"
+#include "server/fit/motion_study.h"
+
+namespace phrenic::client {
+
+nlohmann::json RegistrationJson(const fit::RegisteredLungs& registered);
+void PrintRegistration(const fit::RegisteredLungs& registered);
+void PrintRegistrationCsv(const fit::RegisteredLungs& registered);
+// On standard error.
+void PrintDoubts(const fit::RegisteredLungs& registered);
+
+// The numbers of one fit; `options` are those it was made with.
+nlohmann::json FitJson(const fit::MotionFit& fit, const fit::FitOptions& options);
+void PrintFit(const fit::MotionFit& fit, const fit::FitOptions& options);
+// Rows: kind, name, numbers, points, value, standard_error, spread, mean, p95.
+void PrintFitCsv(const fit::MotionFit& fit);
+
+// The motion expected for one number, over regions of the points.
+struct Expected {
+  fit::Prediction prediction;
+  std::vector<fit::Amplitude> amplitudes;
+  std::vector<fit::RegionError> regions;  // motion and, as the error's mean, the spread between people
+  int people = 0;                         // the prior is of
+};
+nlohmann::json ExpectedJson(const Expected& expected);
+void PrintExpected(const Expected& expected);
+void PrintExpectedCsv(const Expected& expected);
+
+nlohmann::json StudyJson(const fit::MotionStudy& study);
+// One row a person, and their mean.
+void PrintMotionStudy(const fit::MotionStudy& study);
+void PrintMotionStudyCsv(const fit::MotionStudy& study);
+
+}  // namespace phrenic::client
+
+#endif  // PHRENIC_CLIENT_PRINT_MOTION_FIT_H_

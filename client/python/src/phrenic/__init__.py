@@ -1,0 +1,50 @@
+"""Phrenic from Python: simulates the breathing diaphragm and returns numpy arrays.
+
+>>> import phrenic
+>>> with phrenic.Session("cube-springs") as s:
+...     for frame in s.play(seconds=0.1, fps=20):
+...         print(frame["cube"].positions.shape)
+(8, 3)
+(8, 3)
+
+A session without a server runs on one that this process starts, and that ends with it. `phrenic.connect(address)` calls
+a server that runs. `phrenic.aio` is the same for asyncio, `phrenic.gym` has environments for reinforcement learning,
+`phrenic.v1` the generated messages.
+"""
+
+from . import aio, errors
+from .connection import Tls
+from .errors import Error
+from .frame import Body, Frame, State
+from .jobs import Comparison, Physiology, Study
+from .operations import EVERYTHING, SimulationWarning
+from .runs import Run, batch
+from .server import LocalServer, Server, connect, default_server, local
+from .session import Session, Studies
+from .table import Table
+
+__version__ = "0.1.0"
+__all__ = [
+    "Body",
+    "Comparison",
+    "EVERYTHING",
+    "Error",
+    "Frame",
+    "LocalServer",
+    "Physiology",
+    "Run",
+    "Server",
+    "Session",
+    "SimulationWarning",
+    "State",
+    "Studies",
+    "Study",
+    "Table",
+    "Tls",
+    "aio",
+    "batch",
+    "connect",
+    "default_server",
+    "errors",
+    "local",
+]

@@ -1,0 +1,271 @@
+"""The same for asyncio.
+
+>>> import asyncio, phrenic
+>>> async def main():
+...     async with phrenic.aio.Session("cube-springs") as s:
+...         return [frame.tick async for frame in s.play(seconds=0.02, fps=100)]
+>>> len(asyncio.run(main()))
+2
+"""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+from typing import Any, AsyncIterator, Mapping, Optional, Sequence, Union
+
+import grpc
+import grpc.aio
+
+from . import jobs
+from .call import SERVICES, Call, Operation, T, delay_before_repeat, one
+from .connection import Target, Tls, channel_options, credentials_of, target_of
+from .errors import error_of
+from .frame import Frame
+from .operations import EVERYTHING, Scene, SessionOperations, attach, create, source_of
+from .server import default_server
+from .table import Table
+from .v1 import server_pb2, session_pb2
+
+
+class Connection:
+    """An asyncio connection, of one event loop."""
+
+    def __init__(self, target: Target) -> None:
+        self.target = target
+        self._channel = (
+            grpc.aio.secure_channel(target.host, credentials_of(target.tls), channel_options())
+            if target.tls
+            else grpc.aio.insecure_channel(target.host, channel_options())
+        )
+        self._stubs = {name: make(self._channel) for name, make in SERVICES.items()}
+
+    async def close(self) -> None:
+        """Ends the calls in progress."""
+        await self._channel.close()
+
+    async def run(self, operation: Operation[T]) -> T:
+        """Performs the operation's calls and returns its result."""
+        try:
+            call = next(operation)
+            while True:
+                try:
+                    answer = await self._perform(call)
+                except BaseException as error:  # also cancellation: the operation tidies up on the server
+                    call = operation.throw(error)
+                else:
+                    call = operation.send(answer)
+        except StopIteration as done:
+            return done.value
+
+    def open(self, call: Call) -> Any:
+        """Starts a streaming call without a deadline; returns its messages."""
+        return self._method(call)(call.request, metadata=[*self.target.metadata, *call.metadata])
+
+    def _method(self, call: Call) -> Any:
+        service, _, method = call.method.partition(".")
+        return getattr(self._stubs[service], method)
+
+    async def _perform(self, call: Call) -> Any:
+        attempt = 0
+        while True:
+            try:
+                return await self._once(call)
+            except grpc.RpcError as failed:
+                error = error_of(failed)
+                delay = delay_before_repeat(call, error, attempt, self.target.retries)
+                if delay is None:
+                    raise error from None
+            await asyncio.sleep(delay)
+            attempt += 1
+
+    async def _once(self, call: Call) -> Any:
+        answer = self._method(call)(
+            call.request,
+            timeout=call.deadline or self.target.timeout,
+            metadata=[*self.target.metadata, *call.metadata],
+        )
+        if call.each is None:
+            return await answer
+        async for message in answer:
+            call.each(message)
+        return None
+
+
+class Session(SessionOperations):
+    """phrenic.Session for asyncio: `async with Session("thorax") as s`. Created when the block begins, deleted when it
+    ends. Without `server` it runs on the same server as phrenic.Session."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        set: Optional[Mapping[str, Any]] = None,
+        preset: str = "",
+        id: str = "",
+        resolution_mm: Optional[float] = None,
+        server: Optional["Server"] = None,
+    ) -> None:
+        super().__init__(session_pb2.Session(), "", owned=True)
+        self._connection = server.connection if server else Connection(default_server().connection.target)
+        self._shared = server is not None
+        self._source = source_of(scene, resolution_mm)
+        self._creation: Optional[Operation[Any]] = create(scene, set, preset, id, resolution_mm)
+
+    def _join(self, connection: Connection, status: session_pb2.Session, token: str, owned: bool) -> "Session":
+        session = Session.__new__(Session)
+        SessionOperations.__init__(session, status, token, owned)
+        session._connection, session._shared, session._creation = connection, True, None
+        session._source = self._source
+        return session
+
+    async def __aenter__(self) -> "Session":
+        if self._creation is not None:
+            made = await self._connection.run(self._creation)
+            self.status, self._token, self._creation = made.session, made.control_token, None
+        return self
+
+    async def __aexit__(self, *_: Any) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        """Deletes the session, unless it was joined by attach() or has not begun."""
+        if self._owned and self._creation is None:
+            await self._connection.run(self._delete())
+        if not self._shared:
+            await self._connection.close()
+
+    async def step(self, ticks: int = 1, read: Sequence[str] = EVERYTHING, timeout: Optional[float] = None) -> Frame:
+        """As phrenic.Session.step."""
+        return await self._connection.run(self._step(ticks, read, timeout))
+
+    async def play(self, seconds: float, fps: float = 60, read: Sequence[str] = ("bodies",)) -> AsyncIterator[Frame]:
+        """As phrenic.Session.play."""
+        for time in self._frame_times(seconds, fps):
+            yield await self.step(self.ticks_until(time), read)
+
+    async def frame(self, read: Sequence[str] = EVERYTHING) -> Frame:
+        """As phrenic.Session.frame."""
+        return await self._connection.run(self._read(read))
+
+    async def measure(self, name: str) -> float:
+        """As phrenic.Session.measure."""
+        return await self._connection.run(self._measure(name))
+
+    async def measures(self) -> dict[str, float]:
+        """All of the scene's measures."""
+        return await self._connection.run(self._measures())
+
+    async def state_hash(self) -> str:
+        """As phrenic.Session.state_hash."""
+        return await self._connection.run(self._hash())
+
+    async def forces(self, body: str, vertex: Optional[int] = None, kind: str = "") -> Any:
+        """As phrenic.Session.forces."""
+        return await self._connection.run(self._forces(body, vertex, kind))
+
+    async def set(self, preset: str = "", at_tick: Optional[int] = None, **parameters: Any) -> None:
+        """As phrenic.Session.set."""
+        await self._connection.run(self._set(preset, at_tick, parameters))
+
+    async def pull(self, body: str, vertex: int, force: Sequence[float]) -> None:
+        """As phrenic.Session.pull."""
+        await self._connection.run(self._pull(body, vertex, force))
+
+    async def release(self) -> None:
+        """As phrenic.Session.release."""
+        await self._connection.run(self._release())
+
+    async def reset(self) -> None:
+        """As phrenic.Session.reset."""
+        await self._connection.run(self._reset())
+
+    async def fork(self, id: str = "", **parameters: Any) -> "Session":
+        """As phrenic.Session.fork."""
+        made = await self._connection.run(self._fork(id))
+        fork = self._join(self._connection, made.session, made.control_token, owned=True)
+        if parameters:
+            await fork.set(**parameters)
+        return fork
+
+    async def run(self, speed: float = 1, until: float = 0) -> None:
+        """As phrenic.Session.run."""
+        await self._connection.run(self._run_on(speed, until))
+
+    async def pause(self) -> None:
+        """As phrenic.Session.pause."""
+        await self._connection.run(self._pause())
+
+    async def watch(self, max_fps: float = 60) -> AsyncIterator[Frame]:
+        """As phrenic.Session.watch."""
+        await self._connection.run(self._describe())
+        events = self._connection.open(self._watch_call(max_fps))
+        try:
+            async for event in events:
+                frame = self._noted(event)
+                if frame is not None:
+                    yield frame
+        except grpc.RpcError as failed:
+            raise error_of(failed) from None
+        finally:
+            events.cancel()
+
+    async def export(
+        self, path: Union[str, Path], seconds: float = 0, fps: Optional[float] = None, **options: Any
+    ) -> dict[str, Any]:
+        """As phrenic.Session.export."""
+        fields = {"seconds": seconds, "frames_per_second": fps, **options}
+        return await self._connection.run(jobs.export(self.id, path, fields, None))
+
+    async def study(self, kind: str, progress: jobs.Progress = None, **options: Any) -> jobs.Study:
+        """As phrenic.Session.study: study("error", levels=4)."""
+        operation = jobs.study(kind, self._source, self.status.parameters, options, progress)
+        return await self._connection.run(operation)
+
+    async def physiology(self, presets: Sequence[str] = (), progress: jobs.Progress = None) -> jobs.Physiology:
+        """As phrenic.Session.physiology."""
+        return await self._connection.run(jobs.physiology(self._source, presets, progress))
+
+    async def compare(self, other: Union["Session", str, Path], body: str = "", **options: Any) -> jobs.Comparison:
+        """As phrenic.Session.compare."""
+        operation = jobs.comparison(self.id, getattr(other, "id", None), other, body, options)
+        return await self._connection.run(operation)
+
+
+class Server:
+    """phrenic.Server for asyncio: `async with connect(address) as server`."""
+
+    def __init__(self, target: Target) -> None:
+        self.connection = Connection(target)
+        self.about = server_pb2.GetServerResponse()
+
+    async def __aenter__(self) -> "Server":
+        request = server_pb2.GetServerRequest()
+        self.about = await self.connection.run(one(Call("ServerService.GetServer", request)))
+        return self
+
+    async def __aexit__(self, *_: Any) -> None:
+        await self.connection.close()
+
+    async def scenes(self) -> Table:
+        """The catalogue."""
+        call = Call("SceneService.ListScenes", session_pb2.ListScenesRequest())
+        return Table.of((await self.connection.run(one(call))).scenes)
+
+    async def attach(self, id: str) -> Session:
+        """As phrenic.Server.attach."""
+        status = await self.connection.run(attach(id))
+        session = Session(status.scene, server=self)
+        return session._join(self.connection, status, "", owned=False)
+
+
+def connect(
+    address: str = "127.0.0.1:50051",
+    *,
+    token: Optional[str] = None,
+    tls: Union[bool, str, Path, Tls, None] = None,
+    timeout: float = 120,
+    retries: int = 5,
+) -> Server:
+    """As phrenic.connect. phrenic.local().address is a server to connect to."""
+    return Server(target_of(address, token, tls, timeout, retries))

@@ -1,0 +1,71 @@
+"""Calls as values. An operation is a generator that yields calls and receives their answers, so that the blocking and
+the async client share every line but the one that waits."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+from typing import Any, Callable, Generator, Optional, TypeVar
+
+from google.protobuf.message import Message
+
+from .errors import Error, Unavailable
+from .v1 import (
+    compare_pb2_grpc,
+    export_pb2_grpc,
+    frames_pb2_grpc,
+    server_pb2_grpc,
+    session_pb2_grpc,
+    study_pb2_grpc,
+)
+
+SERVICES: dict[str, Callable[[Any], Any]] = {
+    "CompareService": compare_pb2_grpc.CompareServiceStub,
+    "ExportService": export_pb2_grpc.ExportServiceStub,
+    "FrameService": frames_pb2_grpc.FrameServiceStub,
+    "SceneService": session_pb2_grpc.SceneServiceStub,
+    "ServerService": server_pb2_grpc.ServerServiceStub,
+    "SessionService": session_pb2_grpc.SessionServiceStub,
+    "StudyService": study_pb2_grpc.StudyServiceStub,
+}
+
+LONG = 3600.0
+"""Deadline of calls that compute: steps, compiling, studies, exports [s]."""
+
+T = TypeVar("T")
+Operation = Generator["Call", Any, T]
+"""Yields calls, receives their answers, and returns a T."""
+
+
+@dataclass
+class Call:
+    """One call of the API."""
+
+    method: str
+    """"SessionService.StepSession"."""
+    request: Message
+    deadline: Optional[float] = None
+    """[s]; None: the connection's."""
+    each: Optional[Callable[[Any], None]] = None
+    """For a streaming call: receives each message. The answer is then None."""
+    repeatable: bool = True
+    """True if a repeat after a lost connection changes nothing more."""
+
+    @property
+    def metadata(self) -> list[tuple[str, str]]:
+        """`x-session-id`, by which a proxy routes the call to the server that has the session."""
+        session = getattr(self.request, "session_id", "")
+        return [("x-session-id", session)] if session and session.isascii() and session.isprintable() else []
+
+
+def delay_before_repeat(call: Call, error: Error, attempt: int, retries: int) -> Optional[float]:
+    """Returns how long to wait before the call is repeated [s], or None if the error is final: only UNAVAILABLE is
+    repeated, after 0.1, 0.2, 0.4 ... s with jitter, at most 2 s."""
+    if not isinstance(error, Unavailable) or not call.repeatable or attempt >= retries:
+        return None
+    return min(2.0, 0.1 * 2**attempt) * random.uniform(0.5, 1)
+
+
+def one(call: Call) -> Operation[Any]:
+    """The operation of a single call."""
+    return (yield call)

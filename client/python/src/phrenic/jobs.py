@@ -1,0 +1,231 @@
+"""Work that the server does beside sessions: exports, studies, comparisons, physiology; as operations (call.py)."""
+
+from __future__ import annotations
+
+import hashlib
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, BinaryIO, Callable, Mapping, Optional, Union
+
+import numpy as np
+
+from .call import LONG, Call, Operation
+from .errors import DataLoss, FailedPrecondition, InvalidArgument, NotFound, Unavailable
+from .names import fill, is_repeated, nearest, row
+from .table import Table
+from .v1 import compare_pb2, export_pb2, physiology_pb2, session_pb2, study_pb2
+
+Progress = Optional[Callable[[float, str], None]]
+"""Called with 0 to 1, and what is being done."""
+
+STUDIES = {"error": study_pb2.ErrorStudy, "stability": study_pb2.StabilityStudy, "cost": study_pb2.CostStudy,
+           "streaming": study_pb2.StreamingStudy}  # fmt: skip
+
+
+# --- exports ---
+def export(
+    session_id: str, path: Union[str, Path], options: Mapping[str, Any], progress: Progress
+) -> Operation[dict[str, Any]]:
+    """Records a copy of the session to a file, whose ending chooses the format. Returns the summary."""
+    path = Path(path)
+    formats = (yield Call("ExportService.ListFormats", export_pb2.ListFormatsRequest())).formats
+    known = {each.name: each for each in formats}
+    name = path.suffix[1:]
+    if name not in known:
+        raise InvalidArgument(f"{path}: there is no format {name!r}: {nearest(name, known)}")
+    request = export_pb2.CreateExportRequest(session_id=session_id, format=name, file_stem=path.stem)
+    job = (yield Call("ExportService.CreateExport", fill(request, options), LONG, repeatable=False)).job
+    try:
+        yield from _export_done(job.id, progress)
+        return (yield from _download(job.id, path, known[name].ending == "zip"))
+    finally:
+        yield Call("ExportService.DeleteExport", export_pb2.DeleteExportRequest(export_id=job.id))
+
+
+def _export_done(id: str, progress: Progress) -> Operation[None]:
+    seen: list[export_pb2.Export] = []
+
+    def note(event: export_pb2.WatchExportResponse) -> None:
+        seen[:] = [event.job]
+        if progress:
+            progress(event.job.progress, "recording")
+
+    yield Call("ExportService.WatchExport", export_pb2.WatchExportRequest(export_id=id), LONG, note)
+    if seen[0].state != export_pb2.EXPORT_STATE_DONE:
+        raise FailedPrecondition(seen[0].problem or "the export has not ended")
+
+
+def _download(id: str, path: Path, zipped: bool) -> Operation[dict[str, Any]]:
+    part = path.with_name(path.name + ".part")
+    try:
+        with open(part, "w+b") as file:
+            yield from _receive(id, file)
+            file.seek(0)
+            digest = hashlib.sha256(file.read()).hexdigest()
+        exports = (yield Call("ExportService.ListExports", export_pb2.ListExportsRequest())).exports
+        summary = next(each.summary for each in exports if each.id == id)
+        if digest != summary.sha256:
+            raise DataLoss(f"{path}: the file arrived damaged")
+        if zipped:
+            zipfile.ZipFile(part).extractall(path.parent)  # refuses names outside the folder
+        else:
+            part.replace(path)
+        return row(summary)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _receive(id: str, file: BinaryIO) -> Operation[None]:
+    """Downloads, and resumes where a lost connection left off."""
+    for attempt in range(5):
+        request = export_pb2.DownloadExportRequest(export_id=id, offset=file.tell())
+        try:
+            yield Call("ExportService.DownloadExport", request, LONG, lambda m: file.write(m.chunk), repeatable=False)
+            return
+        except Unavailable:
+            if attempt == 4:
+                raise
+
+
+# --- studies ---
+@dataclass
+class Study:
+    """The result of a study. `tables` has a Table for each kind of row; `rows` is the main one."""
+
+    rows: Table
+    tables: dict[str, Table]
+    advice: str
+    took: float
+    """Wall time [s]."""
+    page: str
+    """A self-contained HTML page of it; empty where the server's viewer is not built."""
+
+
+def study(
+    kind: str, source: session_pb2.SceneSource, parameters: Any, options: Mapping[str, Any], progress: Progress
+) -> Operation[Study]:
+    """Runs a study on the server and deletes it there."""
+    request = study_pb2.CreateStudyRequest(source=source, parameters=parameters)
+    getattr(request, kind).CopyFrom(fill(STUDIES[kind](), options))
+    id = (yield Call("StudyService.CreateStudy", request, LONG, repeatable=False)).study.id
+    try:
+        seen: list[study_pb2.Study] = []
+
+        def note(event: study_pb2.WatchStudyResponse) -> None:
+            seen[:] = [event.study]
+            if progress:
+                progress(event.study.progress, event.study.doing)
+
+        yield Call("StudyService.WatchStudy", study_pb2.WatchStudyRequest(study_id=id), LONG, note)
+        if seen[0].state != study_pb2.STUDY_STATE_DONE:
+            raise FailedPrecondition(seen[0].problem or "the study has not ended")
+        return study_of(seen[0].result, (yield from _page(id)))
+    finally:
+        yield Call("StudyService.DeleteStudy", study_pb2.DeleteStudyRequest(study_id=id))
+
+
+def _page(id: str) -> Operation[str]:
+    try:
+        return (yield Call("StudyService.GetStudyPage", study_pb2.GetStudyPageRequest(study_id=id))).html
+    except NotFound:  # the viewer, which draws it, is not built
+        return ""
+
+
+def study_of(result: Any, page: str) -> Study:
+    """Returns the tables of a result."""
+    table = getattr(result, result.WhichOneof("result"))
+    tables = {
+        field.name: Table.of(getattr(table, field.name))
+        for field in table.DESCRIPTOR.fields
+        if field.message_type and is_repeated(field)
+    }
+    main = tables.get("rows") or next((each for each in tables.values() if len(each)), Table([]))
+    return Study(main, tables, getattr(table, "advice", ""), result.took_s, page)
+
+
+# --- physiology ---
+@dataclass
+class Physiology:
+    """A thorax' breath against published ranges."""
+
+    rows: Table
+    """A row a check: breath, what, unit, value, low, high, verdict, note, source."""
+    curves: dict[str, dict[str, tuple[np.ndarray, np.ndarray]]]
+    """curves[breath][what] is (times [s], values)."""
+
+    @property
+    def outside(self) -> Table:
+        """The checks whose value is outside its range."""
+        return self.rows.where(verdict="outside")
+
+
+def physiology(source: session_pb2.SceneSource, presets: Any, progress: Progress) -> Operation[Physiology]:
+    """Simulates the breathing presets and compares them with published ranges."""
+    tables: list[physiology_pb2.PhysiologyTable] = []
+
+    def note(event: study_pb2.CheckPhysiologyResponse) -> None:
+        if event.HasField("table"):
+            tables.append(event.table)
+        elif progress:
+            progress(event.progress, "breathing")
+
+    request = study_pb2.CheckPhysiologyRequest(source=source, presets=presets)
+    yield Call("StudyService.CheckPhysiology", request, LONG, note, repeatable=False)
+    curves: dict[str, dict[str, tuple[np.ndarray, np.ndarray]]] = {}
+    for curve in tables[-1].curves:
+        curves.setdefault(curve.breath, {})[curve.what] = (np.array(curve.time_s), np.array(curve.values))
+    return Physiology(Table.of(tables[-1].rows), curves)
+
+
+# --- comparison ---
+@dataclass
+class Comparison:
+    """Distances between two surfaces or motions [mm]."""
+
+    rows: Table
+    """The whole surfaces, then regions, then times."""
+    definition: str
+    warnings: list[str]
+
+    def __getitem__(self, name: str) -> float:
+        """Returns a distance of the whole surfaces, such as ["hd95_max"]."""
+        return self.rows[0][name]
+
+
+def comparison(
+    session_id: str, other_id: Optional[str], file: Any, body: str, options: Mapping[str, Any]
+) -> Operation[Comparison]:
+    """Compares a body of a session with that of another one, or with a file."""
+    of_file = {name: value for name, value in options.items() if name in ("unit_mm", "time")}
+    rest = {name: value for name, value in options.items() if name not in of_file}
+    b = file_of(file, of_file) if other_id is None else body_of(other_id, body)
+    return (yield from compare(body_of(session_id, body), b, rest))
+
+
+def compare(a: compare_pb2.ComparedSurface, b: compare_pb2.ComparedSurface, options: Any) -> Operation[Comparison]:
+    """Compares two surfaces."""
+    tables: list[compare_pb2.ComparisonTable] = []
+
+    def note(event: compare_pb2.CompareResponse) -> None:
+        if event.HasField("table"):
+            tables.append(event.table)
+
+    request = fill(compare_pb2.CompareRequest(a=a, b=b), options)
+    yield Call("CompareService.Compare", request, LONG, note, repeatable=False)
+    rows = ({**row(each), **row(each.distance)} for each in tables[-1].rows)
+    return Comparison(Table(rows), tables[-1].definition, list(tables[-1].warnings))
+
+
+def body_of(session_id: str, body: str) -> compare_pb2.ComparedSurface:
+    """A body of a session, as it is now; empty: the deformable body with the most triangles."""
+    return compare_pb2.ComparedSurface(body=compare_pb2.SessionBody(session_id=session_id, body=body))
+
+
+def file_of(path: Union[str, Path], options: Mapping[str, Any]) -> compare_pb2.ComparedSurface:
+    """A surface or motion file."""
+    path = Path(path)
+    try:
+        return fill(compare_pb2.ComparedSurface(name=path.name, content=path.read_bytes()), options)
+    except OSError as error:
+        raise InvalidArgument(f"{path}: {error.strerror}") from None

@@ -1,0 +1,108 @@
+"""A server in this process's care."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import tempfile
+import threading
+import time
+from pathlib import Path
+from typing import Optional, Sequence, Union
+
+from .errors import Unavailable
+
+_PREFIX = "phrenic-"
+
+
+def binary(path: Union[str, Path, None] = None) -> str:
+    """Returns phrenicd: the given one, that of $PHRENICD, of the build that this package lies in, or of the PATH.
+    Unavailable if there is none."""
+    built = Path(__file__).resolve().parents[3] / "phrenicd"  # build/python/src/phrenic/local.py
+    for candidate in (path, os.environ.get("PHRENICD"), built if built.is_file() else None, shutil.which("phrenicd")):
+        if candidate:
+            found = shutil.which(str(candidate))
+            if found is None:
+                raise Unavailable(f"{candidate} is not a program")
+            return found
+    raise Unavailable("there is no phrenicd: install the package phrenic, run deploy/run --build-only, or set PHRENICD")
+
+
+class Process:
+    """phrenicd on free loopback ports, with a temporary folder. Ends with stop(), and with this process, however that
+    ends: the kernel signals it (setpriv --pdeathsig)."""
+
+    def __init__(self, program: str, flags: Sequence[str], data: Union[str, Path, None]) -> None:
+        _sweep()
+        self._folder = tempfile.TemporaryDirectory(prefix=f"{_PREFIX}{os.getpid()}-")
+        self.log = Path(self._folder.name) / "log"
+        words = [program, "--listen", "127.0.0.1:0", "--web", "127.0.0.1:0", "--start", "none", "--store", "none"]
+        words += ["--spool", self._folder.name, "--max-sessions", "1000", "--pause-minutes", "0"]
+        words += ["--data", str(data)] if data else []
+        self._words = [*_tied(), *words, *flags]
+        self._process: Optional[subprocess.Popen[bytes]] = None
+        self._started = threading.Event()
+        # The kernel sends the signal when the thread that started the server ends, so that thread stays.
+        threading.Thread(target=self._keep, name="phrenicd", daemon=True).start()
+        self._started.wait()
+        self.address = self._await_text("gRPC:   ")
+        self.web = "http://" + self._await_text("://")
+
+    @property
+    def pid(self) -> int:
+        """Process id of the server."""
+        assert self._process is not None
+        return self._process.pid
+
+    def stop(self) -> None:
+        """Ends the server and removes its folder. A second call has no effect."""
+        if self._process is not None and self._process.poll() is None:
+            self._process.terminate()
+            try:
+                self._process.wait(15)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+        self._folder.cleanup()
+
+    def _keep(self) -> None:
+        # Settings of a server that the user runs elsewhere are not this one's.
+        environment = {k: v for k, v in os.environ.items() if not k.startswith("PHRENICD")}
+        try:
+            with open(self.log, "wb") as log:
+                self._process = subprocess.Popen(
+                    self._words,
+                    stdin=subprocess.DEVNULL,
+                    stdout=log,
+                    stderr=log,
+                    env=environment,
+                    start_new_session=True,  # Ctrl-C in a terminal interrupts Python alone
+                )
+        finally:
+            self._started.set()
+        self._process.wait()
+
+    def _await_text(self, word: str) -> str:
+        """Returns what the server prints after `word`, up to a slash or the end of the line."""
+        deadline = time.monotonic() + 30
+        while self._process is not None and self._process.poll() is None and time.monotonic() < deadline:
+            _, found, rest = self.log.read_text(errors="replace").partition(word)
+            if found and "\n" in rest:
+                return rest.partition("\n")[0].partition("/")[0].strip()
+            time.sleep(0.005)
+        text = self.log.read_text(errors="replace").strip()
+        self.stop()
+        raise Unavailable(f"phrenicd did not start: {text}")
+
+
+def _tied() -> list[str]:
+    """The words that tie a program's life to this process; none where util-linux has no setpriv."""
+    setpriv = shutil.which("setpriv")
+    return [setpriv, "--pdeathsig", "TERM"] if setpriv else []
+
+
+def _sweep() -> None:
+    """Removes folders of processes that were killed."""
+    for folder in Path(tempfile.gettempdir()).glob(f"{_PREFIX}[0-9]*-*"):
+        if not Path("/proc", folder.name.split("-")[1]).exists():
+            shutil.rmtree(folder, ignore_errors=True)

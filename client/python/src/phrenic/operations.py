@@ -1,0 +1,284 @@
+"""What a session can do, as operations (call.py). Session and aio.Session run them."""
+
+from __future__ import annotations
+
+import math
+import uuid
+import warnings
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Iterable, Iterator, Mapping, Optional, Sequence, Union
+
+import numpy as np
+from google.protobuf import text_format
+
+from .call import LONG, Call, Operation
+from .errors import Aborted, InvalidArgument, NotFound, Unavailable
+from .frame import Frame, Geometry, frame_of, watched_frame
+from .names import enum_number, fill, look_up, row
+from .v1 import frames_pb2, parameters_pb2, scene_pb2, session_pb2, state_pb2
+
+Scene = Union[str, Path, scene_pb2.Scene]
+"""A name of the server's catalogue, a file of scene text, or a scene."""
+
+EVERYTHING = ("bodies", "positions", "velocities", "scalars")
+"""All that a step can return; read=() returns measures and the hash alone, which is fastest."""
+
+
+class SimulationWarning(UserWarning):
+    """What the server warns of: for example a time step above the largest stable one."""
+
+
+def source_of(scene: Scene, resolution_mm: Optional[float] = None) -> session_pb2.SceneSource:
+    """Returns the scene as requests name it. InvalidArgument names the line of a scene text that cannot be parsed."""
+    source = session_pb2.SceneSource(resolution_mm=resolution_mm)
+    if isinstance(scene, scene_pb2.Scene):
+        source.scene.CopyFrom(scene)
+    elif str(scene).endswith(".textproto"):
+        try:
+            text_format.Parse(Path(scene).read_text(encoding="utf-8"), source.scene)
+        except (OSError, text_format.ParseError) as error:
+            raise InvalidArgument(f"{scene}: {error}") from None
+    else:
+        source.name = str(scene)
+    return source
+
+
+def parameters_of(values: Optional[Mapping[str, Any]]) -> parameters_pb2.Parameters:
+    """Returns live parameters. InvalidArgument for an unknown name, with the nearest one."""
+    return fill(parameters_pb2.Parameters(), values or {}, "parameter")
+
+
+@lru_cache
+def parts_of(read: tuple[str, ...]) -> tuple[int, ...]:
+    """Returns the parts of the state by name. InvalidArgument names the nearest one."""
+    return tuple(enum_number(state_pb2.StatePart.DESCRIPTOR, part) for part in read)
+
+
+class SessionOperations:
+    """Knows one session: its id, last status and geometry. Not thread-safe."""
+
+    def __init__(self, session: session_pb2.Session, token: str, owned: bool) -> None:
+        self.status = session
+        self._token = token
+        self._owned = owned
+        self._closed = False
+        self._geometry: Optional[Geometry] = None
+        self._layout: Optional[state_pb2.StateLayout] = None
+        self._last: Optional[Frame] = None
+
+    @property
+    def id(self) -> str:
+        """The session's id on the server."""
+        return self.status.id
+
+    @property
+    def scene(self) -> str:
+        """Name of the scene."""
+        return self.status.scene
+
+    @property
+    def tick(self) -> int:
+        """Steps since the last reset, as last seen."""
+        return self.status.tick
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s], as last seen."""
+        return self.status.time
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Every live parameter, as last seen; enums by their lower-case names."""
+        return row(self.status.parameters)
+
+    @property
+    def time_step(self) -> float:
+        """[s]"""
+        return self.status.parameters.time_step
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.id} of {self.scene} at tick {self.tick}>"
+
+    # --- reading ---
+    def _describe(self) -> Operation[Geometry]:
+        """Reads what is constant, once."""
+        if self._geometry is None:
+            bodies: list[frames_pb2.GetGeometryResponse] = []
+            request = frames_pb2.GetGeometryRequest(session_id=self.id)
+            yield Call("FrameService.GetGeometry", request, LONG, bodies.append, repeatable=False)
+            layout = yield Call("SessionService.GetState", self._state_request(["layout"]))
+            self._layout = layout.state.layout
+            self._geometry = Geometry(bodies)
+        return self._geometry
+
+    def _state_request(self, read: Iterable[str]) -> session_pb2.GetStateRequest:
+        return session_pb2.GetStateRequest(session_id=self.id, read=parts_of(tuple(read)))
+
+    def _frame_of(self, arrays: state_pb2.StateArrays, answer: Any, read: Sequence[str]) -> Frame:
+        geometry = self._geometry if "bodies" in read else None
+        layout = self._layout or state_pb2.StateLayout()
+        self._last = frame_of(arrays, answer.state_hash, answer.measures, layout, geometry)
+        self.status.tick, self.status.time = arrays.tick, arrays.time
+        return self._last
+
+    def _read(self, read: Sequence[str]) -> Operation[Frame]:
+        if read:
+            yield from self._describe()
+        answer = yield Call("SessionService.GetState", self._state_request(read))
+        return self._frame_of(answer.state, answer, read)
+
+    def _known(self) -> Operation[Frame]:
+        """The last frame if nothing has changed since, else a new one without arrays."""
+        if self._last is not None and self._last.tick == self.status.tick:
+            return self._last
+        return (yield from self._read(()))
+
+    def _measure(self, name: str) -> Operation[float]:
+        frame = yield from self._known()
+        return look_up(frame.measures, name, "measure")
+
+    def _measures(self) -> Operation[dict[str, float]]:
+        return dict((yield from self._known()).measures)
+
+    def _hash(self) -> Operation[str]:
+        return (yield from self._known()).state_hash
+
+    def _forces(self, body: str, vertex: Optional[int], kind: str) -> Operation[Any]:
+        request = frames_pb2.GetForcesRequest(session_id=self.id, body=body, vertex=vertex, kind=kind)
+        answer = yield Call("FrameService.GetForces", request)
+        if kind:
+            return np.frombuffer(answer.sizes, "<f4")
+        if vertex is None:
+            return list(answer.kinds)
+        return {name: np.array([f.x, f.y, f.z]) for name, f in zip(answer.kinds, answer.forces)}
+
+    # --- stepping ---
+    def _step(self, ticks: int, read: Sequence[str], timeout: Optional[float]) -> Operation[Frame]:
+        if read and self._geometry is None:
+            yield from self._describe()
+        before = self.status.tick
+        request = session_pb2.StepSessionRequest(
+            session_id=self.id, ticks=ticks, control_token=self._token, read=parts_of(tuple(read))
+        )
+        if self._owned:
+            request.expected_tick = before
+        try:
+            answer = yield Call("SessionService.StepSession", request, timeout or LONG, repeatable=False)
+        except Unavailable:
+            if not self._owned:
+                raise
+            return (yield from self._step_to(before, before + ticks, read, timeout))
+        self.status = answer.session
+        arrays = answer.state if read else state_pb2.StateArrays(tick=self.tick, time=self.time, phase=math.nan)
+        return self._frame_of(arrays, answer, read)
+
+    def _step_to(self, before: int, after: int, read: Sequence[str], timeout: Optional[float]) -> Operation[Frame]:
+        """After a lost connection: takes the steps that were not carried out. The run is deterministic and nobody else
+        steps it, so the state at the tick `after` is the answer that was lost."""
+        frame = yield from self._read(read)
+        if frame.tick == after:
+            return frame
+        if not before <= frame.tick < after:
+            raise Aborted(f"the connection was lost at tick {before}, and the session is at tick {frame.tick} now")
+        return (yield from self._step(after - frame.tick, read, timeout))
+
+    def ticks_until(self, time: float) -> int:
+        """Number of steps to the simulated time [s], rounded; at least 1."""
+        return max(1, round((time - self.time) / self.time_step))
+
+    def _frame_times(self, seconds: float, fps: float) -> Iterator[float]:
+        """Times of frames from now on that a step can reach [s]."""
+        start = self.time
+        for i in range(1, max(1, round(seconds * fps)) + 1):
+            if self.time < start + i / fps - 0.5 * self.time_step:
+                yield start + i / fps
+
+    # --- changing ---
+    def _change(self, name: str, request: Any) -> Operation[Any]:
+        """Makes a change that takes effect once, however often it is sent."""
+        request.session_id = self.id
+        request.control_token = self._token
+        request.request_id = str(uuid.uuid4())
+        answer = yield Call(f"SessionService.{name}", request, LONG)
+        self.status = answer.session
+        self._last = None
+        return answer
+
+    def _set(self, preset: str, at_tick: Optional[int], values: Mapping[str, Any]) -> Operation[None]:
+        request = session_pb2.UpdateParametersRequest(
+            parameters=parameters_of(values), preset=preset, apply_at_tick=at_tick
+        )
+        answer = yield from self._change("UpdateParameters", request)
+        for text in answer.warnings:
+            warnings.warn(text, SimulationWarning, stacklevel=5)
+
+    def _pull(self, body: str, vertex: int, force: Sequence[float]) -> Operation[None]:
+        request = session_pb2.PullSessionRequest()
+        pull = request.pulls.add(body=body, vertex=vertex)
+        pull.force.x, pull.force.y, pull.force.z = force
+        yield from self._change("PullSession", request)
+
+    def _release(self) -> Operation[None]:
+        yield from self._change("PullSession", session_pb2.PullSessionRequest(release_others=True))
+
+    def _reset(self) -> Operation[None]:
+        yield from self._change("ResetSession", session_pb2.ResetSessionRequest())
+
+    def _run_on(self, speed: Optional[float], until: float) -> Operation[None]:
+        request = session_pb2.PlaySessionRequest(speed=speed, until_time=until, as_fast_as_possible=speed == 0)
+        if speed == 0:
+            request.ClearField("speed")
+        yield from self._change("PlaySession", request)
+
+    def _pause(self) -> Operation[None]:
+        yield from self._change("PauseSession", session_pb2.PauseSessionRequest())
+
+    def _fork(self, fork_id: str) -> Operation[session_pb2.ForkSessionResponse]:
+        request = session_pb2.ForkSessionRequest(session_id=self.id, fork_id=fork_id)
+        return (yield Call("SessionService.ForkSession", request, LONG, repeatable=False))
+
+    def _delete(self) -> Operation[None]:
+        if self._closed:
+            return
+        self._closed = True
+        request = session_pb2.DeleteSessionRequest(session_id=self.id, control_token=self._token)
+        try:
+            yield Call("SessionService.DeleteSession", request, repeatable=False)
+        except (NotFound, Unavailable):
+            pass  # it has ended already
+
+    # --- watching ---
+    def _watch_call(self, max_fps: float) -> Call:
+        request = frames_pb2.WatchFramesRequest(
+            session_id=self.id, max_fps=max_fps, codec=frames_pb2.CODEC_RAW, watch_id=str(uuid.uuid4())
+        )
+        return Call("FrameService.WatchFrames", request)
+
+    def _noted(self, event: frames_pb2.WatchFramesResponse) -> Optional[Frame]:
+        """Returns the frame of an event of the stream; takes over a status."""
+        if event.HasField("session"):
+            self.status, self._last = event.session, None
+        if not event.HasField("frame") or self._geometry is None:
+            return None
+        return watched_frame(event.frame, self._geometry)
+
+
+def create(
+    scene: Scene,
+    set: Optional[Mapping[str, Any]],
+    preset: str,
+    id: str,
+    resolution_mm: Optional[float],
+) -> Operation[session_pb2.CreateSessionResponse]:
+    """Creates a session."""
+    request = session_pb2.CreateSessionRequest(
+        session_id=id, source=source_of(scene, resolution_mm), parameters=parameters_of(set), preset=preset
+    )
+    return (yield Call("SessionService.CreateSession", request, LONG, repeatable=False))
+
+
+def attach(id: str) -> Operation[session_pb2.Session]:
+    """Returns the status of an existing session."""
+    answer = yield Call("SessionService.GetSession", session_pb2.GetSessionRequest(session_id=id))
+    return answer.session

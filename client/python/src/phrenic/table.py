@@ -1,0 +1,107 @@
+"""Tables of results.
+
+>>> table = Table([{"what": "tidal volume", "value": 0.5}, {"what": "rate", "value": 12.0}])
+>>> table["value"]
+array([ 0.5, 12. ])
+>>> len(table), table[0]["what"]
+(2, 'tidal volume')
+>>> print(table)
+what          value
+tidal volume    0.5
+rate             12
+"""
+
+from __future__ import annotations
+
+from html import escape
+from typing import Any, Iterable, Iterator, Sequence, overload
+
+import numpy as np
+from google.protobuf.message import Message
+
+from .names import nearest, row
+
+
+class Table(Sequence[dict[str, Any]]):
+    """Rows of named values; `table["column"]` is a numpy array. A value that could not be determined is None in a row
+    and NaN in a column of numbers."""
+
+    def __init__(self, rows: Iterable[dict[str, Any]]) -> None:
+        self._rows = list(rows)
+
+    @classmethod
+    def of(cls, messages: Iterable[Message]) -> "Table":
+        """Returns a table with a row a message."""
+        return cls(row(message) for message in messages)
+
+    @property
+    def columns(self) -> list[str]:
+        """The names of the columns."""
+        return list(self._rows[0]) if self._rows else []
+
+    @overload
+    def __getitem__(self, key: int) -> dict[str, Any]: ...
+
+    @overload
+    def __getitem__(self, key: slice) -> "Table": ...
+
+    @overload
+    def __getitem__(self, key: str) -> np.ndarray: ...
+
+    def __getitem__(self, key: Any) -> Any:
+        if isinstance(key, str):
+            return self._column(key)
+        return Table(self._rows[key]) if isinstance(key, slice) else self._rows[key]
+
+    def _column(self, name: str) -> np.ndarray:
+        if name not in self.columns:
+            raise KeyError(f"there is no column {name}: {nearest(name, self.columns)}")
+        column = [each[name] for each in self._rows]
+        numbers = any(isinstance(value, float) for value in column)
+        return np.array([np.nan if numbers and value is None else value for value in column])
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        return iter(self._rows)
+
+    def where(self, **conditions: Any) -> "Table":
+        """Returns the rows whose columns have these values."""
+        return Table(r for r in self._rows if all(r.get(name) == value for name, value in conditions.items()))
+
+    def to_pandas(self) -> Any:
+        """Returns a pandas.DataFrame. Requires: pandas is installed (python3-pandas)."""
+        import pandas
+
+        return pandas.DataFrame(self._rows, columns=self.columns)
+
+    def __str__(self) -> str:
+        if not self._rows:
+            return "(no rows)"
+        cells = [[name for name in self.columns]] + [[_cell(r[name]) for name in self.columns] for r in self._rows]
+        widths = [max(len(line[i]) for line in cells) for i in range(len(self.columns))]
+        numeric = [any(isinstance(r[name], (int, float)) for r in self._rows) for name in self.columns]
+        return "\n".join(
+            "  ".join(
+                text.rjust(width) if right else text.ljust(width) for text, width, right in zip(line, widths, numeric)
+            ).rstrip()
+            for line in cells
+        )
+
+    def _repr_html_(self) -> str:
+        """The table as notebooks show it."""
+        head = "".join(f"<th>{escape(name)}</th>" for name in self.columns)
+        body = "".join(
+            "<tr>" + "".join(f"<td>{escape(_cell(r[name]))}</td>" for name in self.columns) + "</tr>" for r in self._rows
+        )
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+    def __repr__(self) -> str:
+        return f"Table of {len(self)} rows: {', '.join(self.columns)}"
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return "-"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,97 @@
+#include "server/mechanics/lungs/lung_surroundings.h"
+
+#include <cmath>
+#include <limits>
+
+#include "server/mechanics/skinning/body_points.h"
+#include "server/mesh/triangle_tree.h"
+
+namespace phrenic {
+namespace {
+
+constexpr double kContactReach = 0.02;  // between a lung and what touches it at rest [m]
+constexpr double kThrough = 0.006;      // depth to which a lung may reach through it [m]
+constexpr double kLeastCosine = 0.64;   // least cosine between the normals of both
+constexpr double kInwards = 0.3;        // least part of the normal towards the midline where the mediastinum touches
+
+struct Surface {
+  explicit Surface(const Mesh& of) : mesh(of), tree(of.vertices, of.triangles) { tree.Fit(mesh.vertices, boxes); }
+
+  // Returns the nearest point if the boundary point faces it.
+  SurfacePoint Facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {
+    const SurfacePoint near = tree.Nearest(mesh.vertices, boxes, point, kContactReach);
+    if (near.triangle < 0) return near;
+    const Eigen::Matrix3d x = mesh.vertices(Eigen::all, tree.triangle(near.triangle));
+    const Eigen::Vector3d across = (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).stableNormalized();
+    const bool aligned = std::abs(across.dot(normal)) > kLeastCosine;
+    const bool ahead = near.offset.dot(normal) > 0 || near.squared < kThrough * kThrough;
+    return aligned && ahead ? near : SurfacePoint();
+  }
+
+  const Mesh& mesh;
+  TriangleTree tree;
+  TriangleTree::Boxes boxes;
+};
+
+// True if a boundary point above the top of the wall is in the cupola of the pleura, which hangs from it.
+bool IsInCupola(const Eigen::Vector3d& point, const Mesh& wall) { return point.z() > wall.vertices.row(2).maxCoeff(); }
+
+}  // namespace
+
+LungSurroundings::LungSurroundings(const Model& model, int sheet, int wall, const LungTissue& tissue)
+    : model_(model), bodies_{sheet, wall}, areas_(tissue.areas()) {
+  Bind(tissue, model.bodies[sheet].mesh, model.bodies[wall].mesh);
+}
+
+void LungSurroundings::Bind(const LungTissue& tissue, const Mesh& sheet, const Mesh& wall) {
+  const std::array<Surface, 2> surfaces = {Surface(sheet), Surface(wall)};
+  const double side = tissue.box().center().x() > 0 ? 1 : -1;
+  for (Eigen::Index p = 0; p < tissue.points().cols(); ++p) {
+    const Eigen::Vector3d point = tissue.points().col(p), normal = tissue.normals().col(p);
+    std::array<SurfacePoint, 2> near = {surfaces[0].Facing(point, normal), surfaces[1].Facing(point, normal)};
+    if (IsInCupola(point, wall)) near[1] = surfaces[1].tree.Nearest(wall.vertices, surfaces[1].boxes, point, 1);
+    const size_t nearest = near[0].squared <= near[1].squared ? 0 : 1;
+    if (near[nearest].triangle >= 0) {
+      contacts_[nearest].push_back({p, surfaces[nearest].tree.triangle(near[nearest].triangle), near[nearest].weights});
+      neighbours_.push_back(static_cast<LungNeighbour>(nearest));
+    } else if (-side * normal.x() > kInwards) {
+      mediastinal_area_ += areas_[p] * std::abs(normal.x());
+      neighbours_.push_back(LungNeighbour::kMediastinum);
+    } else {
+      neighbours_.push_back(LungNeighbour::kNone);
+    }
+  }
+}
+
+double LungSurroundings::MediastinalShift(const State& state) const {
+  for (const Coordinate& coordinate : model_.coordinates) {
+    if (coordinate.name == "mediastinal shift") return coordinate.Value(state.x) / mediastinal_area_;
+  }
+  return 0;
+}
+
+Points LungSurroundings::Displacement(const State& state) const {
+  Points displacement = Points::Constant(3, areas_.size(), std::numeric_limits<double>::quiet_NaN());
+  for (size_t of = 0; of < contacts_.size(); ++of) {
+    const Points& rest = model_.bodies[bodies_[of]].mesh.vertices;
+    Points moved(3, rest.cols());
+    PlaceBody(model_, state, bodies_[of], moved);
+    for (const Contact& contact : contacts_[of]) {
+      const Eigen::Matrix3d shift = moved(Eigen::all, contact.corners) - rest(Eigen::all, contact.corners);
+      displacement.col(contact.point) = shift * contact.weights;
+    }
+  }
+  const Eigen::Vector3d sideways(MediastinalShift(state), 0, 0);
+  for (Eigen::Index p = 0; p < areas_.size(); ++p) {
+    if (neighbours_[p] == LungNeighbour::kMediastinum) displacement.col(p) = sideways;
+  }
+  return displacement;
+}
+
+double LungSurroundings::Share(LungNeighbour neighbour) const {
+  double area = 0;
+  for (Eigen::Index p = 0; p < areas_.size(); ++p) area += neighbours_[p] == neighbour ? areas_[p] : 0;
+  return area / areas_.sum();
+}
+
+}  // namespace phrenic

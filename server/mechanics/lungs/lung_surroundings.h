@@ -1,0 +1,51 @@
+// What touches a lung, and how it moves: the diaphragm below, the inner wall of the cage around and above, the
+// mediastinum inside. Each boundary point of the tissue that faces one of them closely at rest follows it along the
+// normal; the others, at the margin in the costophrenic recess, are free.
+#ifndef PHRENIC_SERVER_MECHANICS_LUNGS_LUNG_SURROUNDINGS_H_
+#define PHRENIC_SERVER_MECHANICS_LUNGS_LUNG_SURROUNDINGS_H_
+
+#include <array>
+#include <vector>
+
+#include "server/mechanics/lungs/lung_tissue.h"
+#include "server/mechanics/model.h"
+
+namespace phrenic {
+
+enum class LungNeighbour { kDiaphragm, kWall, kMediastinum, kNone };
+
+// Immutable, thread-safe. Refers to the model.
+class LungSurroundings {
+ public:
+  // `sheet` and `wall` are indices of bodies; the lung is that of the tissue, at rest.
+  LungSurroundings(const Model& model, int sheet, int wall, const LungTissue& tissue);
+
+  // Returns how far what touches each boundary point is from where it is at rest (3 x points) [m]; NaN for free points.
+  // A point follows the material that is nearest to it at rest. The mediastinum is shifted sideways by the coordinate
+  // "mediastinal shift" over its area.
+  Points Displacement(const State& state) const;
+
+  const std::vector<LungNeighbour>& neighbours() const { return neighbours_; }  // of each boundary point
+  // The part of the surface that touches a neighbour, 0..1.
+  double Share(LungNeighbour neighbour) const;
+
+ private:
+  struct Contact {
+    Eigen::Index point;       // of the boundary
+    Eigen::Vector3i corners;  // of the triangle of the neighbour
+    Eigen::Vector3d weights;
+  };
+  void Bind(const LungTissue& tissue, const Mesh& sheet, const Mesh& wall);
+  double MediastinalShift(const State& state) const;
+
+  const Model& model_;
+  std::array<int, 2> bodies_;  // by LungNeighbour
+  std::vector<LungNeighbour> neighbours_;
+  std::array<std::vector<Contact>, 2> contacts_;
+  Eigen::VectorXd areas_;        // [m^2]
+  double mediastinal_area_ = 0;  // projected along x [m^2]
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_LUNGS_LUNG_SURROUNDINGS_H_

@@ -1,0 +1,110 @@
+#include "server/physiology/lung_breath.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace phrenic::physiology {
+namespace {
+
+constexpr double kSample = 0.006;  // distance of the points that regions are averaged over [m]
+
+struct MeanOf {
+  double sum = 0, count = 0;
+  void Add(double value) { sum += value, count += 1; }
+  double Value() const { return count > 0 ? sum / count : kNone; }
+};
+
+double VolumeGained(const LungMotion& lung) {
+  double volume = 0;
+  for (Eigen::Index p = 0; p < lung.tissue.areas().size(); ++p) {
+    const Eigen::Vector3d shift = lung.tissue.DisplacementAt(lung.nodes, lung.tissue.points().col(p));
+    volume += lung.tissue.areas()[p] * lung.tissue.normals().col(p).dot(shift);
+  }
+  return volume;
+}
+
+// The sums of one lung.
+struct RegionSums {
+  std::array<MeanOf, kLungRegions> caudal, gained;
+  MeanOf back, front, upwards;
+
+  // `at` is the place in the lung's box, 0..1.
+  void Add(const Eigen::Vector3d& at, double descent, double ventilation) {
+    const int third = std::clamp(static_cast<int>(3 * at.z()), 0, 2);
+    const int depth = at.y() > 2.0 / 3 ? kLungBack : kLungFront;
+    const bool is_between = at.y() > 1.0 / 3 && at.y() <= 2.0 / 3;
+    upwards.Add(descent < 0 ? 1 : 0);
+    for (const int region : {kLungBase + third, depth}) {
+      if (region == depth && is_between) continue;
+      caudal[region].Add(descent);
+      gained[region].Add(ventilation);
+    }
+    if (at.z() < 0.5 && !is_between) (depth == kLungBack ? back : front).Add(descent);
+  }
+};
+
+double PneumothoraxOf(v1::Side side, const v1::Parameters& parameters) {
+  return side == v1::SIDE_LEFT ? parameters.pneumothorax_left() : parameters.pneumothorax_right();
+}
+
+LungReading ReadLung(const LungMotion& lung, const LungField& field) {
+  RegionSums sums;
+  const Eigen::AlignedBox3d& box = lung.tissue.box();
+  for (Eigen::Index i = 0; i < field.ventilation.size(); ++i) {
+    if (field.lung[i] == 0) continue;
+    const Eigen::Vector3d at = (field.PointAt(i) - box.min()).cwiseQuotient(box.sizes());
+    sums.Add(at, -field.displacement(2, i), field.ventilation[i]);
+  }
+  LungReading reading;
+  reading.volume = VolumeGained(lung);
+  for (int r = 0; r < kLungRegions; ++r) {
+    reading.caudal[r] = sums.caudal[r].Value();
+    reading.gained[r] = sums.gained[r].Value();
+  }
+  reading.back_over_front = sums.back.Value() / sums.front.Value();
+  reading.upwards = sums.upwards.Value();
+  return reading;
+}
+
+}  // namespace
+
+absl::StatusOr<BreathingLungs> BreathingLungs::Make(const Subject& subject, const LungElasticity& elasticity) {
+  const Parts& parts = subject.parts;
+  if (parts.lungs.empty() || parts.muscle < 0 || parts.wall < 0) {
+    return absl::FailedPreconditionError(
+        "the scene lacks lungs, a deformable diaphragm or an inner wall of the cage, so that nothing moves lung "
+        "tissue");
+  }
+  BreathingLungs lungs;
+  for (const int b : parts.lungs) {
+    const BodyModel& body = subject.model.bodies[b];
+    absl::StatusOr<LungTissue> tissue = LungTissue::Make(body.mesh, elasticity);
+    if (!tissue.ok()) return tissue.status();
+    const LungSurroundings surroundings(subject.model, parts.muscle, parts.wall, *tissue);
+    lungs.lungs_.push_back({body.name, body.anatomy.side(), *std::move(tissue), surroundings});
+  }
+  return lungs;
+}
+
+std::vector<LungMotion> BreathingLungs::Motions(const Recording& breath, const v1::Parameters& parameters) const {
+  std::vector<LungMotion> motions;
+  for (const Lung& lung : lungs_) {
+    const double follows = 1 - PneumothoraxOf(lung.side, parameters);
+    const Points moved =
+        follows * (lung.surroundings.Displacement(breath.peak) - lung.surroundings.Displacement(breath.base));
+    motions.push_back({lung.tissue, lung.tissue.SolveVectors(moved)});
+  }
+  return motions;
+}
+
+std::vector<LungReading> BreathingLungs::Readings(const std::vector<LungMotion>& motions) const {
+  std::vector<LungReading> readings;
+  for (size_t i = 0; i < motions.size(); ++i) {
+    const absl::StatusOr<LungField> field = SampleLungs(std::span(&motions[i], 1), kSample);
+    readings.push_back(field.ok() ? ReadLung(motions[i], *field) : LungReading());
+    readings.back().lung = lungs_[i].name;
+  }
+  return readings;
+}
+
+}  // namespace phrenic::physiology

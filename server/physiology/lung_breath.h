@@ -1,0 +1,56 @@
+// How lung tissue moves in a breath, driven by the diaphragm, the wall and the mediastinum (mechanics/lungs/), and
+// where air goes.
+#ifndef PHRENIC_SERVER_PHYSIOLOGY_LUNG_BREATH_H_
+#define PHRENIC_SERVER_PHYSIOLOGY_LUNG_BREATH_H_
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "server/mechanics/lungs/lung_field.h"
+#include "server/mechanics/lungs/lung_surroundings.h"
+#include "server/physiology/recording.h"
+
+namespace phrenic::physiology {
+
+// Regions of a lung at rest: thirds of its height; the posterior and the anterior third of its depth.
+enum LungRegion { kLungBase, kLungMiddle, kLungApex, kLungBack, kLungFront, kLungRegions };
+
+// One lung in one breath, from its beginning to its peak.
+struct LungReading {
+  std::string lung;                              // the body's name
+  double volume = 0;                             // gained by the tissue [m^3]
+  std::array<double, kLungRegions> caudal = {};  // mean descent [m]
+  std::array<double, kLungRegions> gained = {};  // mean of div u: volume gained per volume at rest [1]
+  double back_over_front = 0;                    // descent of the thirds of the depth, in the lower half [1]
+  double upwards = 0;                            // part of the volume that moves up, 0..1
+};
+
+// The lungs of a scene as tissue. Refers to the subject's model. Immutable, thread-safe.
+class BreathingLungs {
+ public:
+  // FAILED_PRECONDITION if the scene lacks lungs, a simulated diaphragm or an inner wall; as LungTissue::Make.
+  static absl::StatusOr<BreathingLungs> Make(const Subject& subject, const LungElasticity& elasticity);
+
+  // Returns the motion of each lung in a breath with these parameters. A lung follows its surroundings by 1 - the
+  // pneumothorax of its side: air between them transmits nothing.
+  std::vector<LungMotion> Motions(const Recording& breath, const v1::Parameters& parameters) const;
+  // Returns the readings of these motions.
+  std::vector<LungReading> Readings(const std::vector<LungMotion>& motions) const;
+  // The part of the surface of a lung that touches a neighbour, 0..1.
+  double Share(size_t lung, LungNeighbour neighbour) const { return lungs_[lung].surroundings.Share(neighbour); }
+
+ private:
+  struct Lung {
+    std::string name;
+    v1::Side side;
+    LungTissue tissue;
+    LungSurroundings surroundings;
+  };
+  std::vector<Lung> lungs_;
+};
+
+}  // namespace phrenic::physiology
+
+#endif  // PHRENIC_SERVER_PHYSIOLOGY_LUNG_BREATH_H_

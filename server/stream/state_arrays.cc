@@ -1,0 +1,79 @@
+#include "server/stream/state_arrays.h"
+
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "server/stream/codecs/wire.h"
+#include "server/stream/frame.h"
+
+namespace phrenic::stream {
+namespace {
+
+void WriteLayout(const Model& model, v1::StateLayout& layout) {
+  for (const BodyModel& body : model.bodies) {
+    if (body.first_vertex < 0) continue;
+    v1::SimulatedBody& row = *layout.add_bodies();
+    row.set_name(body.name);
+    row.set_first_vertex(body.first_vertex);
+    row.set_vertices(body.mesh.vertices.cols());
+  }
+  for (const ScalarCoordinate& coordinate : model.scalars) {
+    v1::StateScalar& row = *layout.add_scalars();
+    row.set_name(coordinate.name);
+    row.set_unit(coordinate.unit);
+  }
+}
+
+absl::Status WritePart(const Model& model, const Layout& layout, const State& state, int part,
+                       v1::StateArrays& arrays) {
+  switch (static_cast<v1::StatePart>(part)) {
+    case v1::STATE_PART_POSITIONS:
+      arrays.set_positions(DoublesOf(state.x));
+      break;
+    case v1::STATE_PART_VELOCITIES:
+      arrays.set_velocities(DoublesOf(state.v));
+      break;
+    case v1::STATE_PART_SCALARS:
+      arrays.set_scalars(DoublesOf(state.scalars.q));
+      arrays.set_scalar_rates(DoublesOf(state.scalars.v));
+      break;
+    case v1::STATE_PART_BODIES:
+      arrays.clear_body_positions();
+      arrays.clear_poses();
+      return AppendBodies(model, layout, state, *arrays.mutable_body_positions(), *arrays.mutable_poses());
+    case v1::STATE_PART_LAYOUT:
+      arrays.clear_layout();
+      WriteLayout(model, *arrays.mutable_layout());
+      break;
+    default:
+      break;
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status CheckParts(const StateParts& parts) {
+  for (const int part : parts) {
+    if (part != v1::STATE_PART_UNSPECIFIED && v1::StatePart_IsValid(part)) continue;
+    return absl::InvalidArgumentError(absl::StrCat(
+        "read: ", part,
+        " is no part of a state; the parts are STATE_PART_POSITIONS (1), "
+        "STATE_PART_VELOCITIES (2), STATE_PART_SCALARS (3), STATE_PART_BODIES (4), STATE_PART_LAYOUT (5)"));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<v1::StateArrays> MakeStateArrays(const Model& model, const Layout& layout, const State& state,
+                                                const StateParts& parts) {
+  v1::StateArrays arrays;
+  arrays.set_tick(state.tick);
+  arrays.set_time(state.time);
+  arrays.set_phase(state.phase);
+  for (const int part : parts) {
+    if (absl::Status status = WritePart(model, layout, state, part, arrays); !status.ok()) return status;
+  }
+  return arrays;
+}
+
+}  // namespace phrenic::stream

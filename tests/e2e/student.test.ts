@@ -1,0 +1,133 @@
+import type { Browser } from "playwright-core";
+import { afterAll, beforeAll, expect, test } from "vitest";
+import { endAll, startAll, ViewerPage } from "./browser";
+import type { Server } from "./server";
+
+let server: Server;
+let browser: Browser;
+
+beforeAll(async () => {
+  [browser, server] = await startAll();
+});
+
+afterAll(() => endAll(browser, server));
+
+const student = () => `${server.url}?session=thorax&view=student`;
+
+const sizes = [[1440, 900], [1000, 700], [768, 1024], [600, 360], [320, 640]]; // prettier-ignore
+
+/** A slow motion, of which a browser without a GPU draws enough frames. */
+const slowly = (viewer: ViewerPage) => viewer.page.selectOption("#speed", "0.25");
+
+/** Pictures of the page at several widths; nothing is cut off at the right. */
+async function picturesOf(viewer: ViewerPage, name: string): Promise<void> {
+  for (const [width, height] of sizes) {
+    await viewer.page.setViewportSize({ width, height });
+    await viewer.page.waitForTimeout(1500);
+    const widest = () =>
+      Math.max(
+        ...[...document.querySelectorAll("#student *, #header *")].map((each) => each.getBoundingClientRect().right),
+      );
+    expect(await viewer.page.evaluate(widest)).toBeLessThanOrEqual(width + 1);
+    await viewer.saveScreenshot(`${name}-${width}`);
+  }
+}
+
+test("AClassChoosesABreathAndMovesASlider", async () => {
+  const viewer = await ViewerPage.open(browser, student(), { width: 1440, height: 900 });
+  const { page } = viewer;
+  await slowly(viewer);
+  const stage = (await page.locator("#stage").boundingBox())!;
+  expect(stage.width / 1440).toBeCloseTo(0.7, 1);
+  await page.setViewportSize({ width: 900, height: 620 });
+  expect(await page.locator("#panel").isVisible()).toBe(false);
+  await page.getByRole("button", { name: "Ill", exact: true }).click();
+  await page.getByRole("button", { name: "Right palsy" }).click();
+  await page.waitForSelector('[data-preset="palsy-right"][aria-pressed="true"]');
+  await page.locator("#motion-words", { hasText: "paradoxical motion" }).waitFor({ timeout: 60_000 });
+  expect(await page.textContent("#student")).not.toMatch(/tick|tensegrity|solver|activation/i);
+  expect(await viewer.violations()).toEqual([]);
+  await picturesOf(viewer, "student");
+  await page.setViewportSize({ width: 1440, height: 900 });
+  await page.getByLabel("How fast").focus();
+  await page.keyboard.press("End");
+  await expect.poll(async () => (await server.session()).parameters.breath_length).toBe(1);
+  expect(viewer.consoleErrors).toEqual([]);
+  await viewer.close();
+});
+
+test("TheLightPageHasNoAxeViolations", async () => {
+  const viewer = await ViewerPage.open(browser, student(), { width: 1440, height: 900 }, "light");
+  await viewer.page.waitForSelector("#choices:not([hidden])");
+  expect(await viewer.violations()).toEqual([]);
+  await viewer.saveScreenshot("student-light");
+  await viewer.page.keyboard.press("e");
+  expect(await viewer.violations()).toEqual([]);
+  await viewer.saveScreenshot("expert-light");
+  await viewer.close();
+});
+
+test("TheViewIsInTheAddressAndRemembered", async () => {
+  const viewer = await ViewerPage.open(browser, student());
+  const { page } = viewer;
+  expect(new URL(page.url()).searchParams.get("view")).toBe("student");
+  await page.getByRole("button", { name: "Expert" }).click();
+  expect(await page.locator("#panel").isVisible()).toBe(true);
+  expect(new URL(page.url()).searchParams.get("view")).toBe(null);
+  await page.keyboard.press("e");
+  expect(new URL(page.url()).searchParams.get("view")).toBe("student");
+  await page.goto(server.url);
+  await viewer.waitForPicture();
+  expect(await page.locator("#student").isVisible()).toBe(true);
+  await viewer.close();
+});
+
+test("OneKeyComparesWithHealthAndEndsTheCopy", { timeout: 240_000 }, async () => {
+  const viewer = await ViewerPage.open(browser, student());
+  const { page } = viewer;
+  await slowly(viewer);
+  await page.getByRole("button", { name: "Ill", exact: true }).click();
+  await page.getByRole("button", { name: "Right palsy" }).click();
+  await page.focus("#view");
+  await page.keyboard.press("b");
+  await page.waitForURL(/beside=/);
+  await viewer.waitForPicture();
+  const words = page.locator("#motion-words", { hasText: "Healthy: both domes fall" });
+  await words.waitFor({ timeout: 180_000 });
+  expect(await words.textContent()).toMatch(
+    /The right dome rises by \d+ mm while the left falls by \d+ mm: paradoxical motion\. A breath brings 0\.\d\d l of air instead of 0\.\d\d\./,
+  );
+  expect(await page.locator('[data-graph="dome-height"] .key').count()).toBe(4);
+  expect(await viewer.violations()).toEqual([]);
+  await picturesOf(viewer, "student-compare");
+  await page.focus("#view");
+  await page.keyboard.press("b");
+  await page.waitForURL((url) => !url.search.includes("beside"));
+  const { sessions } = JSON.parse(await server.phrenic("sessions", "-o", "json"));
+  expect(sessions.map(({ id }: { id: string }) => id)).toEqual(["thorax"]);
+  expect(viewer.consoleErrors).toEqual([]);
+  await viewer.close();
+});
+
+test("ABreathIsPredictedPlayedAndMeasured", async () => {
+  const viewer = await ViewerPage.open(browser, student());
+  const { page } = viewer;
+  await page.getByRole("button", { name: "Predict the next breath" }).click();
+  await page.waitForSelector('#play[aria-label="Play"]');
+  await page.locator("#prediction svg").scrollIntoViewIfNeeded();
+  const box = (await page.locator("#prediction svg").boundingBox())!;
+  const [x, y] = [(part: number) => box.x + part * box.width, (part: number) => box.y + part * box.height];
+  await page.mouse.move(x(0.01), y(0.7));
+  await page.mouse.down();
+  await page.mouse.move(x(0.5), y(0.2), { steps: 8 });
+  await page.mouse.move(x(0.99), y(0.7), { steps: 8 });
+  await page.mouse.up();
+  expect(await viewer.violations()).toEqual([]);
+  await page.getByRole("button", { name: "Play and see" }).click();
+  await page
+    .locator("#prediction-words", { hasText: /On average they are 0\.\d\d l apart/ })
+    .waitFor({ timeout: 60_000 });
+  await viewer.saveScreenshot("student-prediction");
+  expect(viewer.consoleErrors).toEqual([]);
+  await viewer.close();
+});

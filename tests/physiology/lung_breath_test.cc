@@ -1,0 +1,119 @@
+// Lung tissue in the breaths of the thorax: its laws, what each cause does to it, and its files in other programs.
+#include "server/physiology/lung_breath.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <map>
+
+#include "server/mechanics/compile/presets.h"
+#include "tests/physiology/generated_thorax.h"
+
+namespace phrenic {
+namespace {
+
+using physiology::BreathingLungs;
+using physiology::LungReading;
+using physiology::Subject;
+
+constexpr size_t kRight = 0, kLeft = 1;
+
+class LungBreath : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    model_ = CompileShipped("thorax", 10);
+    subject_ = *Subject::Of(*model_);
+  }
+  static void TearDownTestSuite() {
+    breaths_.clear();
+    subject_.reset();
+    model_.reset();
+  }
+
+  static const physiology::Recording& Breath(const std::string& preset) {
+    const auto found = breaths_.find(preset);
+    if (found != breaths_.end()) return found->second;
+    auto breath = physiology::Record(
+        *subject_, preset, Parameters(preset), [](double) { return true; }, physiology::FlawSearch::kNever);
+    return breaths_.emplace(preset, *std::move(breath)).first->second;
+  }
+  static v1::Parameters Parameters(const std::string& preset) {
+    v1::Parameters parameters = model_->parameters;
+    parameters.MergeFrom(*FindPreset(model_->scene, preset));
+    return parameters;
+  }
+  static std::vector<LungReading> Read(const std::string& preset, const LungElasticity& elasticity = {}) {
+    const auto lungs = BreathingLungs::Make(*subject_, elasticity);
+    return lungs->Readings(lungs->Motions(Breath(preset), Parameters(preset)));
+  }
+
+  inline static std::shared_ptr<const Model> model_;
+  inline static std::shared_ptr<const Subject> subject_;
+  inline static std::map<std::string, physiology::Recording> breaths_;
+};
+
+TEST_F(LungBreath, TouchesDiaphragmWallAndMediastinum) {
+  const auto lungs = *BreathingLungs::Make(*subject_, {});
+  for (const size_t lung : {kRight, kLeft}) {
+    EXPECT_GT(lungs.Share(lung, LungNeighbour::kDiaphragm), 0.1);
+    EXPECT_GT(lungs.Share(lung, LungNeighbour::kWall), 0.5);
+    EXPECT_GT(lungs.Share(lung, LungNeighbour::kMediastinum), 0.1);
+    EXPECT_LT(lungs.Share(lung, LungNeighbour::kNone), 0.05);
+  }
+}
+
+// ../shared/physiology.md: more at the base than at the apex, more at the back than in front.
+TEST_F(LungBreath, MovesDownMostAtTheBaseAndTheBack) {
+  for (const LungReading& lung : Read("quiet")) {
+    EXPECT_GT(lung.caudal[physiology::kLungBase], lung.caudal[physiology::kLungMiddle]);
+    EXPECT_GT(lung.caudal[physiology::kLungMiddle], lung.caudal[physiology::kLungApex]);
+    EXPECT_GT(lung.caudal[physiology::kLungApex], 0);
+    EXPECT_GT(lung.back_over_front, 1.3);
+    EXPECT_LT(lung.upwards, 0.1);
+  }
+}
+
+TEST_F(LungBreath, MovesUpAtTheTopWhereItIsGlued) {
+  const auto slides = Read("quiet"), glued = Read("quiet", {.tangential = 500});
+  for (const size_t lung : {kRight, kLeft}) {
+    EXPECT_GT(glued[lung].upwards, 0.2);
+    EXPECT_LT(glued[lung].caudal[physiology::kLungMiddle], 0.5 * slides[lung].caudal[physiology::kLungMiddle]);
+    EXPECT_LT(glued[lung].caudal[physiology::kLungApex], 0);
+  }
+}
+
+// The side that the diaphragm leaves is drawn up and gets less air; in health both get alike.
+TEST_F(LungBreath, IsVentilatedLessWhereTheDiaphragmIsParalysed) {
+  const auto health = Read("quiet"), palsy = Read("palsy-right");
+  EXPECT_NEAR(health[kRight].volume / health[kLeft].volume, 1.1, 0.2);
+  EXPECT_LT(palsy[kRight].volume, 0.7 * palsy[kLeft].volume);
+  EXPECT_LT(palsy[kRight].caudal[physiology::kLungBase], 0);
+  EXPECT_GT(palsy[kLeft].caudal[physiology::kLungBase], 0.01);
+}
+
+TEST_F(LungBreath, StandsStillBehindAnOpenPleura) {
+  const auto open = Read("pneumothorax-right");
+  EXPECT_EQ(open[kRight].volume, 0);
+  EXPECT_GT(open[kLeft].volume, 1e-4);
+}
+
+bool Runs(const std::string& command) { return std::system((command + " >/dev/null 2>&1").c_str()) == 0; }
+
+// VTK reads the image and nibabel the displacement; they must agree with each other in LPS.
+TEST_F(LungBreath, IsReadByVtkAndNibabelAlike) {
+  const std::string python = "/usr/bin/python3 ";
+  if (!Runs(python + "-c 'import vtk'")) GTEST_SKIP() << "VTK is not installed (python3-vtk9)";
+  if (!Runs(python + "-c 'import nibabel'")) GTEST_SKIP() << "nibabel is not installed (python3-nibabel)";
+  const std::string vti = testing::TempDir() + "phrenic_lungs.vti", nii = testing::TempDir() + "phrenic_lungs.nii.gz";
+  const std::string lungs =
+      PHRENIC_BINARY_DIR "/phrenic lungs thorax --resolution 20 --preset quiet --spacing 12 --field ";
+  ASSERT_TRUE(Runs(lungs + vti));
+  ASSERT_TRUE(Runs(lungs + nii));
+  EXPECT_EQ(
+      std::system((python + PHRENIC_SOURCE_DIR "/tests/physiology/read_lung_fields.py " + vti + " " + nii).c_str()), 0);
+  std::remove(vti.c_str());
+  std::remove(nii.c_str());
+}
+
+}  // namespace
+}  // namespace phrenic

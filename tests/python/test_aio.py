@@ -1,0 +1,58 @@
+"""The async client gives what the blocking one gives."""
+
+import asyncio
+import tempfile
+import unittest
+from pathlib import Path
+
+import phrenic
+from support import SessionTest
+
+
+class AioTest(SessionTest, unittest.IsolatedAsyncioTestCase):
+    async def test_the_same_steps_give_the_same_states(self):
+        blocking = self.session().step(30)
+        async with phrenic.aio.Session("cube-springs") as session:
+            frame = await session.step(30)
+            self.assertEqual(frame.state_hash, blocking.state_hash)
+            self.assertEqual(await session.state_hash(), blocking.state_hash)
+            async with await session.fork(elasticity=2) as fork:
+                self.assertNotEqual((await fork.step(5)).state_hash, (await session.step(5)).state_hash)
+                self.assertGreater((await session.compare(fork))["hd_max"], 0)
+            with tempfile.TemporaryDirectory() as folder:
+                path = Path(folder, "cube.msh")
+                await session.export(path)
+                self.assertTrue(path.exists())
+
+    async def test_sessions_run_side_by_side(self):
+        async def run(force):
+            async with phrenic.aio.Session("cube-springs", set={"breath_force": force}) as session:
+                frames = [frame async for frame in session.play(seconds=0.1, fps=50)]
+                return frames[-1].state_hash
+
+        hashes = await asyncio.gather(*(run(force) for force in (1, 2, 2)))
+        self.assertEqual(hashes[1], hashes[2])
+
+    async def test_errors_are_typed_and_a_cancelled_job_is_deleted(self):
+        address = phrenic.default_server().address
+        async with phrenic.aio.connect(address) as server:
+            with self.assertRaises(phrenic.errors.NotFound):
+                await server.attach("nothing")
+            self.assertIn("thorax", (await server.scenes())["name"])
+            async with phrenic.aio.Session("cube-springs", server=server) as session:
+                study = asyncio.create_task(session.study("error", seconds=60, levels=8))
+                await asyncio.sleep(0.3)
+                study.cancel()
+                with self.assertRaises(asyncio.CancelledError):
+                    await study
+                joined = await server.attach(session.id)
+                self.assertEqual((await joined.step(2)).tick, 2)
+
+    async def test_a_running_session_is_watched(self):
+        async with phrenic.aio.Session("cube-springs") as session:
+            await session.run(speed=1)
+            async for frame in session.watch():
+                if frame.tick > 0:
+                    break
+            await session.pause()
+            self.assertGreater(frame.tick, 0)

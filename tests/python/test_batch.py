@@ -1,0 +1,51 @@
+"""A batch gives what a loop of sessions gives, at any number of threads."""
+
+import itertools
+import threading
+
+import phrenic
+from support import SessionTest
+
+FORCES = [{"breath_force": force} for force in (0.5, 1, 1.5, 2, 2.5)]
+
+
+class BatchTest(SessionTest):
+    def hashes(self, threads):
+        runs = phrenic.batch("pressure-lungs", FORCES, seconds=0.3, fps=10, threads=threads)
+        return {run.index: run.state_hash for run in runs}
+
+    def test_threads_change_no_bit(self):
+        expected = {}
+        for index, values in enumerate(FORCES):
+            session = self.session("pressure-lungs", set=values)
+            expected[index] = [frame.state_hash for frame in session.play(0.3, fps=10)][-1]
+        self.assertEqual(self.hashes(1), expected)
+        self.assertEqual(self.hashes(3), expected)
+        self.assertEqual(len(set(expected.values())), len(FORCES))
+
+    def test_only_as_many_runs_as_threads_are_begun_ahead(self):
+        begun = []
+
+        def endless():
+            for force in itertools.count():
+                begun.append(force)
+                yield {"breath_force": force % 5}
+
+        runs = phrenic.batch("cube-springs", endless(), seconds=0.05, threads=2)
+        for _ in range(4):
+            next(runs)
+        runs.close()
+        self.assertLessEqual(len(begun), 4 + 2)
+        self.assertFalse([t for t in threading.enumerate() if t.name.startswith("phrenic-batch")])
+
+    def test_a_run_that_diverges_says_so_and_the_others_go_on(self):
+        bad = {"integrator": "explicit_euler", "time_step": 0.1, "elasticity": 10}
+        runs = sorted(phrenic.batch("cube-springs", [{}, bad, {}], seconds=60, fps=1), key=lambda run: run.index)
+        self.assertRegex(runs[1].diverged, "diverged at t = ")
+        self.assertLess(len(runs[1].times), 60)
+        self.assertEqual(runs[0].state_hash, runs[2].state_hash)
+        self.assertEqual((len(runs[0].times), runs[0].diverged), (60, ""))
+
+    def test_an_unknown_parameter_ends_the_batch(self):
+        with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "breath_force"):
+            list(phrenic.batch("cube-springs", [{"breath_forse": 1}], seconds=0.1))

@@ -1,0 +1,99 @@
+"""What goes over the wire: metadata, repeats, errors. The server is a fake whose answers the test chooses."""
+
+import time
+import unittest
+
+import grpc
+
+import phrenic
+from phrenic import errors
+from phrenic.connection import target_of
+from phrenic.v1 import session_pb2
+from support import FakeServer, failing
+
+UNAVAILABLE = grpc.StatusCode.UNAVAILABLE
+
+
+class CallsTest(unittest.TestCase):
+    def setUp(self):
+        self.fake = FakeServer()
+        self.addCleanup(self.fake.stop)
+        self.server = phrenic.connect(self.fake.address, token="secret", retries=3)
+        self.addCleanup(self.server.close)
+
+    def step_at(self, tick):
+        """Answers StepSession as a session at `tick` would."""
+
+        def answer(request):
+            return session_pb2.StepSessionResponse(session={"id": "fake", "tick": tick + request.ticks})
+
+        return answer
+
+    def test_calls_name_their_session_and_the_account(self):
+        session = self.server.attach("class")
+        session.step(1, read=())
+        for _, _, metadata in self.fake.calls[1:]:
+            self.assertEqual(metadata["x-session-id"], "class")
+        for _, _, metadata in self.fake.calls:
+            self.assertEqual(metadata["authorization"], "Bearer secret")
+
+    def test_a_change_is_repeated_with_one_request_id(self):
+        then = session_pb2.UpdateParametersResponse(session={"id": "fake"})
+        self.fake.answers["UpdateParameters"] = failing(UNAVAILABLE, 2, then)
+        phrenic.Session("any", server=self.server).set(breath_force=2)
+        ids = {request.request_id for request in self.fake.made("UpdateParameters")}
+        self.assertEqual((len(self.fake.made("UpdateParameters")), len(ids)), (3, 1))
+        self.assertTrue(all(ids))
+
+    def test_other_errors_are_not_repeated(self):
+        self.fake.answers["UpdateParameters"] = failing(grpc.StatusCode.ABORTED, 9, None)
+        with self.assertRaises(errors.Aborted):
+            phrenic.Session("any", server=self.server).set(breath_force=2)
+        self.assertEqual(len(self.fake.made("UpdateParameters")), 1)
+
+    def test_steps_whose_answer_was_lost_are_not_taken_twice(self):
+        session = phrenic.Session("any", server=self.server)
+        self.fake.answers["StepSession"] = failing(UNAVAILABLE, 1, None)
+        done = session_pb2.GetStateResponse(state={"tick": 4}, state_hash="a")
+        self.fake.answers["GetState"] = failing(UNAVAILABLE, 1, done)
+        self.assertEqual(session.step(4, read=()).state_hash, "a")
+        self.assertEqual(len(self.fake.made("StepSession")), 1)
+
+    def test_steps_that_were_cut_off_are_taken_to_their_end(self):
+        session = phrenic.Session("any", server=self.server)
+        self.fake.answers["StepSession"] = failing(UNAVAILABLE, 1, self.step_at(3))
+        self.fake.answers["GetState"] = lambda *_: session_pb2.GetStateResponse(state={"tick": 3})
+        self.assertEqual(session.step(10, read=()).tick, 10)
+        self.assertEqual([(r.ticks, r.expected_tick) for r in self.fake.made("StepSession")], [(10, 0), (7, 3)])
+
+    def test_steps_of_a_session_that_others_step_are_not_repeated(self):
+        session = self.server.attach("class")
+        self.fake.answers["StepSession"] = failing(UNAVAILABLE, 9, None)
+        with self.assertRaises(errors.Unavailable):
+            session.step(1, read=())
+        request = self.fake.made("StepSession")[0]
+        self.assertFalse(request.HasField("expected_tick"))
+
+    def test_a_deadline_ends_a_call(self):
+        session = phrenic.Session("any", server=self.server)
+        self.fake.answers["StepSession"] = lambda *_: time.sleep(1)
+        with self.assertRaisesRegex(errors.DeadlineExceeded, "timeout="):
+            session.step(1, read=(), timeout=0.1)
+
+    def test_every_status_code_has_its_class(self):
+        for code in grpc.StatusCode:
+            if code != grpc.StatusCode.OK:
+                self.assertEqual(errors.make_error(code.name, "text").code, code.name)
+
+    def test_a_token_does_not_cross_a_network_in_the_clear(self):
+        with self.assertRaisesRegex(errors.InvalidArgument, "https://example.org:1"):
+            target_of("example.org:1", token="secret")
+        self.assertIsNotNone(target_of("https://example.org:1", token="secret").tls)
+        self.assertIsNone(target_of("[::1]:1", token="secret").tls)
+        for bad in ("example.org", "ftp://a:1", ""):
+            with self.assertRaisesRegex(errors.InvalidArgument, "HOST:PORT"):
+                target_of(bad)
+
+    def test_a_missing_certificate_is_named(self):
+        with self.assertRaisesRegex(errors.InvalidArgument, "tls: /no/ca.pem"):
+            phrenic.connect("https://127.0.0.1:1", tls="/no/ca.pem")

@@ -1,0 +1,90 @@
+"""Steps lose nothing: the state hash can be computed from what a step returns."""
+
+import struct
+
+import numpy as np
+
+import phrenic
+from support import SessionTest
+
+BASIS, PRIME, WORD = 0xCBF29CE484222325, 0x100000001B3, (1 << 64) - 1
+
+
+def mix(value: float, lane: int) -> int:
+    lane = ((lane ^ struct.unpack("<Q", struct.pack("<d", value))[0]) * PRIME) & WORD
+    return lane ^ (lane >> 29)
+
+
+def hash_of(state: phrenic.State) -> str:
+    """server/mechanics/state.cc, in Python."""
+    lanes = [BASIS, BASIS + 1, BASIS + 2, BASIS + 3]
+    for array in (state.positions, state.velocities, state.scalars, state.scalar_rates):
+        numbers = [] if array is None else array.ravel().tolist()
+        whole = len(numbers) // 4 * 4
+        for i, number in enumerate(numbers):
+            lane = i % 4 if i < whole else 0
+            lanes[lane] = mix(number, lanes[lane])
+    total = mix(state.phase, mix(state.time, BASIS))
+    for lane in lanes:
+        total = mix(struct.unpack("<d", struct.pack("<Q", lane))[0], total)
+    return f"{total:016x}"
+
+
+class StateTest(SessionTest):
+    def test_the_hash_of_the_returned_arrays_is_the_state_hash(self):
+        for scene in ("cube-springs", "pressure-lungs"):
+            with self.subTest(scene):
+                frame = self.session(scene).step(50)
+                self.assertEqual(hash_of(frame.state), frame.state_hash)
+                changed = frame.state.positions.copy()
+                changed[0, 0] = np.nextafter(changed[0, 0], 1)
+                bent = phrenic.State(
+                    frame.tick, frame.time, frame.state.phase, changed, frame.state.velocities,
+                    frame.state.scalars, frame.state.scalar_rates,
+                )  # fmt: skip
+                self.assertNotEqual(hash_of(bent), frame.state_hash, "one bit of one number must count")
+
+    def test_reading_the_state_changes_nothing(self):
+        read, unread = self.session(), self.session()
+        for _ in range(10):
+            read.step(1)
+            read.frame()
+        self.assertEqual(read.state_hash, unread.step(10, read=()).state_hash)
+
+    def test_an_unread_part_is_absent_and_named(self):
+        frame = self.session().step(1, read=("positions",))
+        self.assertIsNone(frame.state.velocities)
+        with self.assertRaisesRegex(ValueError, "velocities"):
+            frame.state.velocities_of("cube")
+        with self.assertRaisesRegex(ValueError, "bodies"):
+            frame["cube"]
+        with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "did you mean positions"):
+            self.session().step(1, read=("position",))
+
+    def test_bodies_are_the_state_in_float32_and_share_the_memory_of_the_answer(self):
+        frame = self.session().step(20)
+        seen = frame["cube"].positions
+        self.assertEqual(seen.dtype, np.float32)
+        np.testing.assert_array_equal(seen, frame.state.positions_of("cube").astype(np.float32))
+        self.assertIsNotNone(seen.base)
+        self.assertFalse(seen.flags.owndata)
+        self.assertIs(frame["cube"].positions.base.base, seen.base.base)
+
+    def test_a_frame_equals_an_export_of_the_same_run(self):
+        session = self.session()
+        with self.subTest("the hash of an export's end is that of the steps"):
+            import tempfile
+
+            with tempfile.TemporaryDirectory() as folder:
+                summary = session.export(f"{folder}/cube.msh", seconds=0.2, fps=10)
+            self.assertEqual(session.step(summary["end_tick"], read=()).state_hash, summary["state_hash"])
+
+    def test_rigid_and_still_bodies_are_placed(self):
+        frame = self.session("tensegrity-prism").step(5)
+        for name in frame.bodies:
+            self.assertEqual(frame[name].positions.shape, frame[name].rest.shape)
+            self.assertTrue(np.isfinite(frame[name].positions).all())
+
+    def test_a_coordinate_has_a_name(self):
+        state = self.session("pressure-lungs").step(1).state
+        self.assertEqual(len(state.named_scalars), len(state.layout.scalars))

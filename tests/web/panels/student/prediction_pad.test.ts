@@ -1,0 +1,49 @@
+import { create } from "@bufbuild/protobuf";
+import { expect, test } from "vitest";
+import { ParametersSchema } from "../../../../web/src/gen/phrenic/v1/parameters_pb";
+import { SessionSchema } from "../../../../web/src/gen/phrenic/v1/session_pb";
+import { PredictionPad } from "../../../../web/src/panels/student/prediction_pad";
+import { SessionController } from "../../../../web/src/session/session_controller";
+import { TimeSeries } from "../../../../web/src/state/time_series";
+import { FakeClock, settle } from "../../fakes/fake_clock";
+import { FakeServer } from "../../fakes/fake_server";
+
+test("ABreathIsDrawnByKeysThenPlayedAndMeasured", async () => {
+  const server = new FakeServer();
+  const controller = new SessionController(server.api, "thorax", new FakeClock());
+  controller.receive(create(SessionSchema, { speed: 1, parameters: create(ParametersSchema, { breathLength: 4 }) }));
+  const history = new TimeSeries(60);
+  for (const time of [0, 1, 2]) history.add(time, [["v", 0.0025]]);
+  const pad = new PredictionPad({ controller, history, key: () => "v" });
+  document.body.replaceChildren(pad.element);
+  const press = (id: string) => pad.element.querySelector<HTMLElement>(`#${id}`)!.click();
+  press("predict");
+  await settle();
+  expect(server.paused).toEqual(["thorax"]);
+  const key = (name: string) =>
+    pad.element.querySelector("svg")!.dispatchEvent(new KeyboardEvent("keydown", { key: name }));
+  key("ArrowRight");
+  for (let i = 0; i < 10; i++) key("ArrowUp");
+  expect(pad.element.querySelector("svg")!.getAttribute("aria-valuetext")).toBe("after 0.1 s: 3.00 l");
+  for (let i = 0; i < 50; i++) key("ArrowRight");
+  press("predict-play");
+  await settle();
+  expect(server.played.map(([id]) => id)).toEqual(["thorax"]);
+  for (const time of [3, 4, 5, 6]) history.add(time, [["v", 0.0025]]);
+  pad.draw();
+  expect(pad.element.querySelector("#prediction-words")!.textContent).toContain("0.49 l apart");
+  expect(pad.element.querySelector(".seen")!.getAttribute("points")!.split(" ")).toHaveLength(5);
+});
+
+test("AResetEndsThePrediction", async () => {
+  const controller = new SessionController(new FakeServer().api, "thorax", new FakeClock());
+  const history = new TimeSeries(60);
+  history.add(2, [["v", 0.0025]]);
+  const pad = new PredictionPad({ controller, history, key: () => "v" });
+  pad.element.querySelector<HTMLElement>("#predict")!.click();
+  await settle();
+  pad.element.querySelector<HTMLElement>("#predict-play")!.click();
+  history.add(0, [["v", 0.0025]]);
+  pad.draw();
+  expect(pad.element.querySelector("svg")!.hasAttribute("hidden")).toBe(true);
+});

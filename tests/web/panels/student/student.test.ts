@@ -1,0 +1,184 @@
+import { create } from "@bufbuild/protobuf";
+import { beforeEach, expect, test } from "vitest";
+import { ParametersSchema } from "../../../../web/src/gen/phrenic/v1/parameters_pb";
+import { type Preset, PresetSchema } from "../../../../web/src/gen/phrenic/v1/scene_pb";
+import { SessionSchema } from "../../../../web/src/gen/phrenic/v1/session_pb";
+import { Choices } from "../../../../web/src/panels/student/choices";
+import { compareButton } from "../../../../web/src/panels/student/compare_button";
+import { LessonCard } from "../../../../web/src/panels/student/lesson_card";
+import { sliders } from "../../../../web/src/panels/student/sliders";
+import { SessionController } from "../../../../web/src/session/session_controller";
+import { Signal } from "../../../../web/src/state/signal";
+import { FakeClock, settle } from "../../fakes/fake_clock";
+import { FakeServer } from "../../fakes/fake_server";
+
+let server: FakeServer;
+let controller: SessionController;
+let presets: Signal<Preset[]>;
+let revision = 0n;
+
+const quiet = { diaphragmActivation: 0.06061, intercostalActivation: 0.12, breathLength: 4, ventilatorPressure: 0 };
+const receive = (values: object) =>
+  controller.receive(
+    create(SessionSchema, { revision: ++revision, parameters: create(ParametersSchema, { ...quiet, ...values }) }),
+  );
+const preset = (name: string, group: string, parameters: object) =>
+  create(PresetSchema, { name, group, description: `About ${name}.`, parameters });
+
+beforeEach(() => {
+  server = new FakeServer();
+  controller = new SessionController(server.api, "thorax", new FakeClock());
+  presets = new Signal<Preset[]>([]);
+  document.body.replaceChildren();
+});
+
+test("ChoicesFollowThePresetThatAnotherViewerChose", () => {
+  const { element } = new Choices(controller, presets);
+  presets.set([
+    preset("quiet", "Breathing patterns", { diaphragmActivation: 0.06061 }),
+    preset("copd", "Lungs and pleura", { diaphragmActivation: 0.5 }),
+  ]);
+  receive({});
+  const pressed = () =>
+    [...element.querySelectorAll("button")]
+      .filter(({ ariaPressed }) => ariaPressed === "true")
+      .map((each) => each.textContent);
+  expect(pressed()).toEqual(["Healthy", "Quiet"]);
+  receive({ diaphragmActivation: 0.5 });
+  expect(pressed()).toEqual(["Ill", "Copd"]);
+  expect(element.querySelector("#choice-description")!.textContent).toBe("About copd.");
+  receive({ diaphragmActivation: 0.3 });
+  expect(pressed()).toEqual(["Ill"]);
+});
+
+test("RareChoicesAreFolded", () => {
+  const { element } = new Choices(controller, presets);
+  presets.set([...Array(12).keys()].map((i) => preset(`p${i}`, "Manoeuvres", { breathLength: i + 1 })));
+  const count = () => element.querySelectorAll("[data-preset]").length;
+  expect(count()).toBe(8);
+  element.querySelector<HTMLElement>(".more")!.click();
+  expect(count()).toBe(12);
+});
+
+const slide = (element: HTMLElement, name: string, position: number) => {
+  const input = element.querySelector<HTMLInputElement>(`#effort-${name}`)!;
+  input.value = String(position);
+  input.oninput?.(new Event("input") as InputEvent);
+};
+
+test("TheSlidersSetBothMusclesTheRateAndTheShare", async () => {
+  const element = sliders(controller);
+  receive({});
+  slide(element, "depth", 1);
+  await settle();
+  const { diaphragmActivation, intercostalActivation } = server.updates[0] as typeof quiet;
+  expect(diaphragmActivation! / intercostalActivation!).toBeCloseTo(0.06061 / 0.12, 3);
+  expect(diaphragmActivation! / 0.6 + intercostalActivation! / 1.62).toBeCloseTo(2, 3);
+  expect(Object.keys(server.updates[0])).not.toContain("breathLength");
+});
+
+test("ADepthIsUndoneAsOneChange", () => {
+  const element = sliders(controller);
+  receive({});
+  slide(element, "depth", 1);
+  expect(controller.changes.state.value.undo).toBe(true);
+  controller.undo();
+  expect(controller.changes.state.value.undo).toBe(false);
+});
+
+test("AMachineIsPushedWhereMusclesRest", async () => {
+  const element = sliders(controller);
+  receive({ diaphragmActivation: 0, intercostalActivation: 0, ventilatorPressure: 980 });
+  expect(element.textContent).toContain("the machine pushes with 10 cmH₂O");
+  expect(element.querySelector<HTMLInputElement>("#effort-share")!.disabled).toBe(true);
+  slide(element, "depth", 0.8);
+  await settle();
+  expect(server.updates).toMatchObject([{ ventilatorPressure: 1961 }]);
+});
+
+test("TheComparisonStartsWithTheFirstPresetAndOneButton", async () => {
+  presets.set([preset("quiet", "", {}), preset("copd", "", {})]);
+  const opened: string[] = [];
+  const open = (query: string) => opened.push(query);
+  compareButton({ controller, presets, open, close: undefined }).click();
+  await settle();
+  expect(server.updates).toEqual([{ preset: "quiet" }]);
+  expect(opened).toEqual(["?session=thorax&beside=thorax-2"]);
+});
+
+const lesson = {
+  title: "How we breathe",
+  summary: "A breath.",
+  scene: "thorax",
+  steps: [
+    { title: "One", caption: "First.", preset: "quiet" },
+    {
+      title: "Two",
+      caption: "Second.",
+      question: {
+        words: "Which?",
+        answers: [{ words: "this", right: true }, { words: "that" }], // prettier-ignore
+        explanation: "Because.",
+      },
+    },
+  ],
+};
+
+function card(files: Record<string, unknown>) {
+  const played: string[] = [];
+  const fetchFile = async (path: string) => {
+    if (!(path in files)) throw new Error(`${path}: the server has no such file`);
+    return files[path] as never;
+  };
+  return { card: new LessonCard({ fetchFile, play: (_, step) => played.push(step.title) }), played };
+}
+
+test("ALessonIsPlayedStepByStep", async () => {
+  const { card: player, played } = card({ "lessons/one.json": lesson });
+  await player.start({ name: "one", step: 1 });
+  expect(player.element.textContent).toContain("Step 1 of 2");
+  player.move(-1);
+  player.move(1);
+  player.move(1);
+  expect(played).toEqual(["One", "Two"]);
+  expect(player.place.value).toEqual({ name: "one", step: 2 });
+  player.element.querySelector<HTMLElement>("#lesson-next")!.click();
+  expect(player.place.value).toBeUndefined();
+});
+
+test("AWrongAnswerCanBeTriedAgainAndARightOneIsExplained", async () => {
+  const { card: player } = card({ "lessons/one.json": lesson });
+  await player.start({ name: "one", step: 2 });
+  const form = player.element.querySelector("form")!;
+  const answer = (i: number) => {
+    form.querySelectorAll("input")[i].checked = true;
+    form.onsubmit?.(new Event("submit") as SubmitEvent);
+    return form.querySelector(".answer")!.textContent;
+  };
+  form.onsubmit?.(new Event("submit") as SubmitEvent);
+  expect(form.textContent).toContain("Choose an answer first.");
+  expect(answer(1)).toContain("Not yet.");
+  expect(answer(0)).toBe("Right. Because.");
+});
+
+test.each([
+  ["missing", {}, "the server has no such file"],
+  ["../../etc", {}, "is not a name"],
+  ["empty", { "lessons/empty.json": { title: "a", summary: "b", scene: "c" } }, "a lesson needs at least one"],
+  ["odd", { "lessons/odd.json": { title: "a", steps: [{ colour: "red" }] } }, "colour"],
+])("ABadLessonIsRefusedWithAReason %s", async (name, files, words) => {
+  const { card: player } = card(files);
+  await player.start({ name, step: 1 });
+  expect(player.element.textContent).toContain("This lesson cannot be played");
+  expect(player.element.textContent).toContain(words);
+  expect(player.place.value).toBeUndefined();
+});
+
+test("TheListNamesEveryLesson", async () => {
+  const { card: player } = card({ "lessons/index.json": ["one"], "lessons/one.json": lesson });
+  const fold = player.element.querySelector("details")!;
+  fold.open = true;
+  fold.ontoggle?.(new Event("toggle") as ToggleEvent);
+  await settle();
+  expect(player.element.querySelector('[data-lesson="one"]')!.textContent).toBe("How we breatheA breath.");
+});

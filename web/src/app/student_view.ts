@@ -1,0 +1,177 @@
+import type { LayerStyles } from "../appearance/layer_styles";
+import { elementById } from "../dom/elements";
+import type { Frame } from "../gen/phrenic/v1/frames_pb";
+import type { Lesson, LessonStep, LessonView } from "../gen/phrenic/v1/lesson_pb";
+import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
+import type { CompileReport } from "../gen/phrenic/v1/report_pb";
+import type { Preset } from "../gen/phrenic/v1/scene_pb";
+import { valuesOf } from "../graphs/catalogue";
+import { controlledGroup } from "../panels/session/control_dialog";
+import { Choices } from "../panels/student/choices";
+import { compareButton } from "../panels/student/compare_button";
+import { LessonCard } from "../panels/student/lesson_card";
+import { MotionSentence } from "../panels/student/motion_sentence";
+import { PredictionPad } from "../panels/student/prediction_pad";
+import { sliders } from "../panels/student/sliders";
+import { StudentGraphsPanel } from "../panels/student/student_graphs_panel";
+import { fetchJson, type LessonPlace, presetOf, withLessonPlace } from "../session/lessons";
+import { type PageView, rememberPageView, withPageView } from "../session/page_view";
+import type { Participation } from "../session/participation";
+import type { SessionController } from "../session/session_controller";
+import { Signal } from "../state/signal";
+import { TimeSeries } from "../state/time_series";
+import { showLessonView } from "./lesson_scene";
+import type { SceneTools } from "./scene_tools";
+import type { SecondView } from "./second_view";
+
+/** Duration that is kept [simulated s]. */
+const kept = 60;
+/** End of the colour scale of a comparison [mm]: the domes of a quiet breath move by 10 to 20. */
+const displacementTop = 20;
+
+/** What the student view acts on. */
+export interface StudentParts {
+  controller: SessionController;
+  participation: Participation;
+  presets: Signal<Preset[]>;
+  report: Signal<CompileReport | undefined>;
+  tools: SceneTools;
+  layerStyles: LayerStyles;
+  secondView: SecondView | undefined;
+  /** The lesson of the address. */
+  lesson: LessonPlace | undefined;
+  /** Opens the page with this query string. */
+  open(query: string): void;
+  /** Called when the layout has changed. */
+  resized(): void;
+}
+
+/** The page as a class sees it: choices, three sliders, two graphs and a sentence. A button changes to the expert view. */
+export class StudentView {
+  readonly element = elementById("student");
+  readonly view: Signal<PageView>;
+  private readonly history = new TimeSeries(kept);
+  private readonly besideHistory = new TimeSeries(kept);
+  private readonly graphs: StudentGraphsPanel;
+  private readonly sentence = new MotionSentence();
+  private readonly lessons: LessonCard;
+  private readonly prediction: PredictionPad;
+  /** The view of the lesson's step, once there is a scene to show. */
+  private lessonView: LessonView | undefined;
+
+  constructor(
+    private readonly parts: StudentParts,
+    first: PageView,
+  ) {
+    const { controller, participation, presets, secondView } = parts;
+    this.lessons = new LessonCard({ fetchFile: fetchJson, play: (lesson, step) => this.playStep(lesson, step) });
+    const open = (query: string) => parts.open(withLessonPlace(query, this.lessons.place.value));
+    this.view = new Signal(first);
+    const beside = secondView === undefined ? undefined : this.besideHistory;
+    this.graphs = new StudentGraphsPanel(this.history, beside, () => controller.sessionId);
+    const close =
+      secondView &&
+      (() => void secondView.end().then(() => open(`?${new URLSearchParams({ session: controller.sessionId })}`)));
+    const compare = compareButton({ controller, presets, open, close });
+    const choices = new Choices(controller, presets).element;
+    const key = () => this.graphs.volumeKey;
+    this.prediction = new PredictionPad({ controller, history: this.history, key });
+    const [act, play] = [
+      controlledGroup(participation, choices, compare),
+      controlledGroup(participation, this.prediction.element),
+    ];
+    const efforts = controlledGroup(participation, sliders(controller));
+    parts.report.subscribe((report) => {
+      efforts.hidden = report?.idleParameters.includes("diaphragm_activation") ?? false;
+    });
+    // A comparison is read from its graphs: they come first.
+    const rest = secondView === undefined ? [efforts, this.graphs.element] : [this.graphs.element, efforts];
+    this.element.append(this.lessons.element, act, this.sentence.element, ...rest, play);
+    this.view.subscribe((view) => this.show(view));
+    this.lessons.place.subscribe((place) => {
+      this.element.classList.toggle("in-lesson", place !== undefined);
+      history.replaceState(null, "", withLessonPlace(location.search, place));
+    });
+    if (parts.lesson !== undefined) void this.lessons.start(parts.lesson);
+    elementById("view-toggle").onclick = () => this.toggle();
+  }
+
+  /** Changes between the student and the expert view; the browser and the address remember it. */
+  toggle(): void {
+    const view = this.view.value === "student" ? "expert" : "student";
+    rememberPageView(view, localStorage);
+    history.replaceState(null, "", withPageView(location.search, view));
+    this.view.set(view);
+    if (view === "student") this.showComparison();
+  }
+
+  /** Records a frame of the session. */
+  receive(frame: Frame): void {
+    this.history.add(frame.time, valuesOf(frame));
+    this.sentence.receive(frame);
+    this.graphs.receive(frame);
+  }
+
+  /** Records a frame of the session beside. */
+  receiveBeside(frame: Frame): void {
+    this.besideHistory.add(frame.time, valuesOf(frame));
+  }
+
+  /** Starts another scene, which the viewer shows already. */
+  start(): void {
+    this.history.clear();
+    this.besideHistory.clear();
+    if (this.view.value === "student") this.showComparison();
+    if (this.lessonView !== undefined) showLessonView(this.lessonView, this.parts.tools, this.parts.layerStyles);
+  }
+
+  /** Goes on in the lesson by a number of steps. */
+  moveInLesson(by: number): void {
+    this.lessons.move(by);
+  }
+
+  /** Draws graphs and the sentence. */
+  draw(): void {
+    if (this.view.value !== "student") return;
+    this.graphs.draw();
+    this.prediction.draw();
+    const source = (history: TimeSeries, parameters: () => Parameters | undefined) => ({ history, parameters });
+    const { controller, secondView } = this.parts;
+    const beside = secondView && source(this.besideHistory, () => secondView.session.value?.parameters);
+    this.sentence.show(
+      source(this.history, () => controller.session.value?.parameters),
+      beside,
+    );
+  }
+
+  /** Sets the parameters of a step, if this viewer may, and shows its view. */
+  private playStep(lesson: Lesson, step: LessonStep): void {
+    const { controller, participation, tools, layerStyles } = this.parts;
+    const preset = presetOf(lesson, step);
+    if (participation.roles.value.mayChange && preset !== "") void controller.usePreset(preset, step.parameters ?? {});
+    this.lessonView = step.view;
+    if (step.view !== undefined) showLessonView(step.view, tools, layerStyles);
+  }
+
+  private show(view: PageView): void {
+    document.body.classList.toggle("student", view === "student");
+    const toggle = elementById("view-toggle");
+    toggle.textContent = view === "student" ? "Expert" : "Student";
+    toggle.title = view === "student" ? "Show every control (E)" : "Plain words and few controls (E)";
+    this.parts.resized();
+  }
+
+  /**
+   * Cuts both thoraxes in the coronal plane, colours them by displacement with one scale, and outlines the healthy
+   * diaphragm in the other.
+   */
+  private showComparison(): void {
+    const { tools, secondView } = this.parts;
+    if (secondView === undefined) return;
+    tools.cut.set({ kind: "coronal", fraction: 0.5, flipped: false });
+    tools.coloring.choose("displacement");
+    tools.coloring.setTop(displacementTop);
+    tools.ghost.set("beside");
+    tools.lookFrom("front");
+  }
+}

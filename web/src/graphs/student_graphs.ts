@@ -1,0 +1,71 @@
+import type { Frame } from "../gen/phrenic/v1/frames_pb";
+import { type TimeSeries, valueAt } from "../state/time_series";
+import type { MotionKeys } from "./breath_motion";
+import { domeHeights, graphsOf, type GraphSpec } from "./catalogue";
+
+/** Pascals per centimetre of water. */
+const cmH2O = 98.0665;
+
+/** Returns the graphs of the student view: lung volume, and the height of the domes and the pressure around the lungs. */
+export function studentGraphs(frame: Frame): { volume: GraphSpec | undefined; others: GraphSpec[] } {
+  const all = graphsOf(frame);
+  const others = [domeGraph(frame), pressureGraph(all)].filter((each) => each !== undefined);
+  const known = all.find(({ unit, abscissa }) => unit === "l" && abscissa === undefined);
+  return { volume: known && { ...known, title: "Air in the lungs" }, others };
+}
+
+function domeGraph(frame: Frame): GraphSpec | undefined {
+  const curves = domeHeights(frame).map(({ key, name }) => ({ key, name, factor: 1000 }));
+  const help = "Height of the top of each dome above its place at rest; it falls when the diaphragm contracts";
+  return curves.length === 0
+    ? undefined
+    : { id: "dome-height", title: "Height of the domes", help, unit: "mm", curves };
+}
+
+function pressureGraph(all: GraphSpec[]): GraphSpec | undefined {
+  const known = all.find(({ id }) => id === "pressure");
+  const curves = (known?.curves ?? []).filter(({ name }) => /pleural|abdominal/.test(name) && !/left/.test(name));
+  const words: Record<string, string> = {
+    "pleural pressure": "around the lungs",
+    "abdominal pressure": "in the belly",
+  };
+  if (curves.length === 0) return undefined;
+  const named = curves.map(({ key, name }) => ({ key, name: words[name] ?? name, factor: 1 / cmH2O }));
+  return { id: "pressures", title: "Pressure", unit: "cmH₂O", curves: named };
+}
+
+/** Returns where the lung volume and the domes of a frame are in a time series; undefined without a lung volume. */
+export function motionKeys(frame: Frame): MotionKeys | undefined {
+  const { volume } = studentGraphs(frame);
+  if (volume === undefined) return undefined;
+  return { volume: volume.curves[0].key, domes: domeHeights(frame).map(({ key, name }) => ({ key, name })) };
+}
+
+const besideKey = (key: string) => `beside ${key}`;
+
+/** Returns a graph with a dashed curve of the session beside for each curve. */
+export function besideGraph(spec: GraphSpec, here: string, beside: string): GraphSpec {
+  const single = spec.curves.length === 1;
+  const name = (who: string, curve: string) => (single ? who : `${curve}, ${who}`);
+  const first = spec.curves.map((curve, order) => ({ ...curve, name: name(here, curve.name), order }));
+  const second = spec.curves.map(({ key, name: curve, factor }, order) => {
+    return { key: besideKey(key), name: name(beside, curve), factor, order, dashed: true };
+  });
+  return { ...spec, curves: [...first, ...second] };
+}
+
+/** Fills `joined` with the last `span` seconds of both series, the second interpolated to the times of the first. */
+export function joinSeries(joined: TimeSeries, here: TimeSeries, beside: TimeSeries, span: number): void {
+  joined.clear();
+  const end = Math.min(here.times.at(-1) ?? 0, beside.times.at(-1) ?? 0);
+  const start = Math.max(end - span, beside.times[0] ?? 0);
+  for (let i = here.indexAt(start); i < here.times.length && here.times[i] <= end; i++) {
+    const time = here.times[i];
+    const own = [...here.series].map(([key, values]): [string, number] => [key, values[i]]);
+    const others = [...beside.series.keys()].map((key): [string, number] => [
+      besideKey(key),
+      valueAt(beside, key, time),
+    ]);
+    joined.add(time, [...own, ...others]);
+  }
+}

@@ -1,0 +1,80 @@
+import { make } from "../../dom/elements";
+import type { Frame } from "../../gen/phrenic/v1/frames_pb";
+import type { GraphSpec } from "../../graphs/catalogue";
+import { besideGraph, joinSeries, studentGraphs } from "../../graphs/student_graphs";
+import { TimeSeries } from "../../state/time_series";
+import { GraphTile } from "../readings/graph_tile";
+
+/** Time shown [simulated s]. */
+const span = 12;
+
+/** Two graphs: lung volume, and the domes or the pressure. A second session has dashed curves in the same graphs. */
+export class StudentGraphsPanel {
+  readonly element = make("section", { id: "student-graphs", ariaLabel: "Graphs" });
+  private readonly tiles = make("div");
+  private readonly kinds = make("div", { className: "causes kinds", role: "group", ariaLabel: "Second graph" });
+  private readonly joined = new TimeSeries(2 * span);
+  private specs: ReturnType<typeof studentGraphs> = { volume: undefined, others: [] };
+  private shown: GraphTile[] = [];
+  private chosen = 0;
+  private key = "";
+
+  /** `beside` is undefined without a second session. */
+  constructor(
+    private readonly history: TimeSeries,
+    private readonly beside: TimeSeries | undefined,
+    private readonly fileName: () => string,
+  ) {
+    this.element.append(make("h2", { className: "unseen" }, "Graphs"), this.tiles, this.kinds);
+  }
+
+  /** Learns from a frame which graphs there are. */
+  receive(frame: Frame): void {
+    const specs = studentGraphs(frame);
+    const key = JSON.stringify(specs);
+    if (key === this.key) return;
+    [this.key, this.specs, this.chosen] = [key, specs, 0];
+    this.build();
+  }
+
+  /** Draws the newest data. */
+  draw(): void {
+    if (this.element.clientWidth === 0) return;
+    if (this.beside !== undefined) joinSeries(this.joined, this.history, this.beside, span);
+    const end = Math.max(this.drawn.times.at(-1) ?? 0, span);
+    for (const tile of this.shown) tile.show({ start: end - span, end }, undefined);
+  }
+
+  /** Key of the lung volume in the history; undefined for a scene without one. */
+  get volumeKey(): string | undefined {
+    return this.specs.volume?.curves[0].key;
+  }
+
+  private get drawn(): TimeSeries {
+    return this.beside === undefined ? this.history : this.joined;
+  }
+
+  private build(): void {
+    const { volume, others } = this.specs;
+    const specs = [volume, others[this.chosen]].filter((each) => each !== undefined);
+    const events = { zoom: () => undefined, resume: () => undefined, cursor: () => undefined };
+    this.shown = specs.map((spec) => new GraphTile(this.withBeside(spec), this.drawn, this.fileName, events));
+    this.tiles.replaceChildren(...this.shown.map(({ element }) => element));
+    this.kinds.hidden = others.length < 2;
+    this.kinds.replaceChildren(...others.map(({ title }, i) => this.kindButton(title, i)));
+  }
+
+  private withBeside(spec: GraphSpec): GraphSpec {
+    return this.beside === undefined ? spec : besideGraph(spec, "chosen", "healthy");
+  }
+
+  private kindButton(title: string, i: number): HTMLElement {
+    const onclick = () => {
+      this.chosen = i;
+      this.build();
+      this.draw();
+      this.kinds.querySelectorAll("button")[i]?.focus();
+    };
+    return make("button", { type: "button", ariaPressed: String(i === this.chosen), onclick }, title);
+  }
+}

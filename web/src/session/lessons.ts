@@ -1,0 +1,65 @@
+import { fromJson, type JsonValue } from "@bufbuild/protobuf";
+import { type Lesson, LessonSchema, type LessonStep, type Question } from "../gen/phrenic/v1/lesson_pb";
+
+/** A place in a lesson: the name of its file and the number of a step from 1. */
+export interface LessonPlace {
+  name: string;
+  step: number;
+}
+
+/** Returns the parsed JSON of a file of the page. Throws Error if there is none. */
+export type FetchJson = (path: string) => Promise<JsonValue>;
+
+/** Fetches a file that is served beside the page. */
+export const fetchJson: FetchJson = async (path) => {
+  const response = await fetch(path);
+  if (!response.ok) throw new Error(`${path}: the server has no such file`);
+  return (await response.json()) as JsonValue;
+};
+
+/** Returns the names of the lessons in the order in which they are taught. */
+export async function lessonNames(fetchFile: FetchJson): Promise<string[]> {
+  return (await fetchFile("lessons/index.json")) as string[];
+}
+
+/** Returns a lesson by the name of its file. Throws Error for an unknown name, field or value. */
+export async function loadLesson(name: string, fetchFile: FetchJson): Promise<Lesson> {
+  if (!/^[a-z0-9-]+$/.test(name)) throw new Error(`lesson: "${name}" is not a name of letters a-z, digits and "-"`);
+  const lesson = fromJson(LessonSchema, await fetchFile(`lessons/${name}.json`));
+  if (lesson.steps.length === 0) throw new Error(`lessons/${name}.json: steps: a lesson needs at least one`);
+  return lesson;
+}
+
+/** Returns the preset of a step: its own or that of the last step before that names one. */
+export function presetOf(lesson: Lesson, step: LessonStep): string {
+  const before = lesson.steps.slice(0, lesson.steps.indexOf(step) + 1);
+  return before.findLast(({ preset }) => preset !== "")?.preset ?? "";
+}
+
+/** Returns the place of an address, "lesson=copd&step=2"; undefined if it names no lesson. */
+export function lessonPlaceOf(address: URL): LessonPlace | undefined {
+  const name = address.searchParams.get("lesson") ?? "";
+  const step = Number(address.searchParams.get("step") ?? "1");
+  return name === "" ? undefined : { name, step: Number.isInteger(step) && step > 0 ? step : 1 };
+}
+
+/** Returns the query string with this place in it, or without any. */
+export function withLessonPlace(query: string, place: LessonPlace | undefined): string {
+  const parameters = new URLSearchParams(query);
+  for (const key of ["lesson", "step"]) parameters.delete(key);
+  if (place !== undefined) {
+    parameters.set("lesson", place.name);
+    parameters.set("step", String(place.step));
+  }
+  return `?${parameters}`;
+}
+
+/** True if the chosen answers, by index, are the right ones. */
+export function rightAnswers({ answers }: Question, chosen: number[]): boolean {
+  return answers.every(({ right }, i) => right === chosen.includes(i));
+}
+
+/** True if a number is within the tolerance of the question. */
+export function rightNumber({ number }: Question, value: number): boolean {
+  return number !== undefined && Math.abs(value - number.value) <= number.tolerance;
+}
