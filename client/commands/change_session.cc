@@ -2,8 +2,8 @@
 #include "client/cli/argument_kinds.h"
 #include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
-#include "client/commands/show_session.h"
 #include "client/files/tokens.h"
+#include "client/print/show_session.h"
 #include "client/terminal/progress.h"
 #include "phrenic/v1/session.grpc.pb.h"
 

@@ -1,8 +1,8 @@
 // `phrenic create` and `phrenic fork`: new sessions.
 #include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
-#include "client/commands/show_session.h"
 #include "client/files/tokens.h"
+#include "client/print/show_session.h"
 #include "client/terminal/progress.h"
 #include "phrenic/v1/session.grpc.pb.h"
 

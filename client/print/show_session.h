@@ -1,6 +1,6 @@
 // Shows the session that a call returned: the end of every command that creates or changes one. On the main thread.
-#ifndef PHRENIC_CLIENT_COMMANDS_SHOW_SESSION_H_
-#define PHRENIC_CLIENT_COMMANDS_SHOW_SESSION_H_
+#ifndef PHRENIC_CLIENT_PRINT_SHOW_SESSION_H_
+#define PHRENIC_CLIENT_PRINT_SHOW_SESSION_H_
 
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -36,4 +36,4 @@ int ShowSession(const Context& context, const grpc::Status& status, const Respon
 
 }  // namespace phrenic::client
 
-#endif  // PHRENIC_CLIENT_COMMANDS_SHOW_SESSION_H_
+#endif  // PHRENIC_CLIENT_PRINT_SHOW_SESSION_H_
