@@ -4,7 +4,12 @@ import { fromJsonString } from "@bufbuild/protobuf";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
 import type { Api } from "../../web/src/connection/api";
-import { type Claim, type Lesson, LessonSchema, Statistic } from "../../web/src/gen/phrenic/v1/lesson_pb";
+import {
+  type Claim,
+  Claim_Statistic as Statistic,
+  type Lesson,
+  LessonSchema,
+} from "../../web/src/gen/phrenic/v1/lesson_pb";
 import type { Parameters } from "../../web/src/gen/phrenic/v1/parameters_pb";
 import { presetOf } from "../../web/src/session/lessons";
 import { endAll, startAll, ViewerPage } from "./browser";
