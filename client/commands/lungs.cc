@@ -136,7 +136,7 @@ absl::StatusOr<std::vector<LungsOfBreath>> ReadBreaths(const Context& context, c
     if (!parameters.ok()) return parameters.status();
     const auto breath = Breathe(context, **subject, preset, *parameters);
     if (!breath.ok()) return breath.status();
-    const std::vector<LungMotion> motions = lungs->Motions(*breath, *parameters);
+    const std::vector<LungMotion> motions = lungs->Motions(*breath);
     const std::vector<double>& volume = breath->of[physiology::kVolume];
     breaths.push_back({preset, volume[breath->peak_sample] - volume.front(), lungs->Readings(motions)});
     if (options.field.empty()) continue;

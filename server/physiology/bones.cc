@@ -17,24 +17,6 @@ struct Mean {
   double Value() const { return count > 0 ? sum / count : kNone; }
 };
 
-// Positions at rest, and how far each point moved down.
-struct Lowered {
-  std::vector<Eigen::Vector3d> rest;
-  std::vector<double> by;
-};
-
-Lowered LoweredLungs(const Model& model, const Parts& parts, const State& from, const State& to) {
-  Lowered all;
-  for (const int b : parts.lungs) {
-    const Points before = Placed(model, from, b), after = Placed(model, to, b);
-    for (Eigen::Index i = 0; i < before.cols(); ++i) {
-      all.rest.emplace_back(model.bodies[b].mesh.vertices.col(i));
-      all.by.push_back(before(2, i) - after(2, i));
-    }
-  }
-  return all;
-}
-
 // Returns what a share of the points is below on an axis at rest.
 double Quantile(std::vector<double> values, double share) {
   const auto nth = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -62,8 +44,19 @@ double LowerRibShift(const Model& model, const Parts& parts, const State& state)
   return mean.Value();
 }
 
-LungShift LungShiftBetween(const Model& model, const Parts& parts, const State& from, const State& to) {
-  const Lowered lungs = LoweredLungs(model, parts, from, to);
+LoweredPoints LoweredLungs(const Model& model, const Parts& parts, const State& from, const State& to) {
+  LoweredPoints all;
+  for (const int b : parts.lungs) {
+    const Points before = Placed(model, from, b), after = Placed(model, to, b);
+    for (Eigen::Index i = 0; i < before.cols(); ++i) {
+      all.rest.emplace_back(model.bodies[b].mesh.vertices.col(i));
+      all.by.push_back(before(2, i) - after(2, i));
+    }
+  }
+  return all;
+}
+
+LungShift ShiftOf(const LoweredPoints& lungs) {
   if (lungs.by.empty()) return {};
   std::vector<double> depths, heights;
   for (const auto& at : lungs.rest) depths.push_back(at.y()), heights.push_back(at.z());

@@ -86,10 +86,10 @@ absl::StatusOr<BreathingLungs> BreathingLungs::Make(const Subject& subject, cons
   return lungs;
 }
 
-std::vector<LungMotion> BreathingLungs::Motions(const Recording& breath, const v1::Parameters& parameters) const {
+std::vector<LungMotion> BreathingLungs::Motions(const Recording& breath) const {
   std::vector<LungMotion> motions;
   for (const Lung& lung : lungs_) {
-    const double follows = 1 - PneumothoraxOf(lung.side, parameters);
+    const double follows = 1 - PneumothoraxOf(lung.side, breath.parameters);
     const Points moved =
         follows * (lung.surroundings.Displacement(breath.peak) - lung.surroundings.Displacement(breath.base));
     motions.push_back({lung.tissue, lung.tissue.SolveVectors(moved)});
@@ -105,6 +105,22 @@ std::vector<LungReading> BreathingLungs::Readings(const std::vector<LungMotion>&
     readings.back().lung = lungs_[i].name;
   }
   return readings;
+}
+
+LoweredPoints LoweredInBreath(const Recording& breath) {
+  const auto lungs = BreathingLungs::Make(*breath.subject, {});
+  if (!lungs.ok()) return LoweredLungs(breath.subject->model, breath.subject->parts, breath.base, breath.peak);
+  LoweredPoints lowered;
+  for (const LungMotion& motion : lungs->Motions(breath)) {
+    const absl::StatusOr<LungField> field = SampleLungs(std::span(&motion, 1), kSample);
+    if (!field.ok()) return {};
+    for (Eigen::Index i = 0; i < field->ventilation.size(); ++i) {
+      if (field->lung[i] == 0) continue;
+      lowered.rest.push_back(field->PointAt(i));
+      lowered.by.push_back(-field->displacement(2, i));
+    }
+  }
+  return lowered;
 }
 
 }  // namespace phrenic::physiology

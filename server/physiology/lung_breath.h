@@ -10,6 +10,7 @@
 #include "absl/status/statusor.h"
 #include "server/mechanics/lungs/lung_field.h"
 #include "server/mechanics/lungs/lung_surroundings.h"
+#include "server/physiology/bones.h"
 #include "server/physiology/recording.h"
 
 namespace phrenic::physiology {
@@ -33,9 +34,9 @@ class BreathingLungs {
   // FAILED_PRECONDITION if the scene lacks lungs, a simulated diaphragm or an inner wall; as LungTissue::Make.
   static absl::StatusOr<BreathingLungs> Make(const Subject& subject, const LungElasticity& elasticity);
 
-  // Returns the motion of each lung in a breath with these parameters. A lung follows its surroundings by 1 - the
-  // pneumothorax of its side: air between them transmits nothing.
-  std::vector<LungMotion> Motions(const Recording& breath, const v1::Parameters& parameters) const;
+  // Returns the motion of each lung in a breath. A lung follows its surroundings by 1 - the pneumothorax of its side:
+  // air between them transmits nothing.
+  std::vector<LungMotion> Motions(const Recording& breath) const;
   // Returns the readings of these motions.
   std::vector<LungReading> Readings(const std::vector<LungMotion>& motions) const;
   // The part of the surface of a lung that touches a neighbour, 0..1.
@@ -50,6 +51,10 @@ class BreathingLungs {
   };
   std::vector<Lung> lungs_;
 };
+
+// Returns points inside the lungs' tissue 6 mm apart, and how far they move down in the breath, as landmarks of CT do;
+// points of the seen surfaces where the scene has no tissue (BreathingLungs::Make), empty without lungs.
+LoweredPoints LoweredInBreath(const Recording& breath);
 
 }  // namespace phrenic::physiology
 

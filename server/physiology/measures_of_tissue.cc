@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "server/physiology/bones.h"
+#include "server/physiology/lung_breath.h"
 #include "server/physiology/measures.h"
 
 namespace phrenic::physiology {
@@ -26,7 +27,7 @@ double Across(const Recording& r, double share) {
   return kPercent * r.subject->fibres.StrainAcross(share, MuscleAt(r, r.base), MuscleAt(r, r.peak));
 }
 
-LungShift Lungs(const Recording& r) { return LungShiftBetween(r.subject->model, r.subject->parts, r.base, r.peak); }
+LungShift Lungs(const Recording& r) { return ShiftOf(LoweredInBreath(r)); }
 
 }  // namespace
 

@@ -111,6 +111,7 @@ absl::StatusOr<Recording> Record(const Subject& subject, const std::string& brea
   Recording recording;
   recording.subject = &subject;
   recording.breath = breath;
+  recording.parameters = parameters;
   Recorder recorder(subject, parameters, search, each, recording);
   Workspace work = subject.model.MakeWorkspace();
   State state = subject.model.InitialState();

@@ -53,6 +53,7 @@ enum Quantity {
 struct Recording {
   const Subject* subject = nullptr;
   std::string breath;
+  v1::Parameters parameters;                        // of the breath
   std::vector<double> time;                         // from the beginning of the measured breath [s]
   std::array<std::vector<double>, kQuantities> of;  // kNone where the scene lacks it
   size_t peak_sample = 0;  // of the greatest lung volume; without one, of the greatest signal of the breath

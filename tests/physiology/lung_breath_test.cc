@@ -44,7 +44,7 @@ class LungBreath : public testing::Test {
   }
   static std::vector<LungReading> Read(const std::string& preset, const LungElasticity& elasticity = {}) {
     const auto lungs = BreathingLungs::Make(*subject_, elasticity);
-    return lungs->Readings(lungs->Motions(Breath(preset), Parameters(preset)));
+    return lungs->Readings(lungs->Motions(Breath(preset)));
   }
 
   inline static std::shared_ptr<const Model> model_;
@@ -71,6 +71,17 @@ TEST_F(LungBreath, MovesDownMostAtTheBaseAndTheBack) {
     EXPECT_GT(lung.back_over_front, 1.3);
     EXPECT_LT(lung.upwards, 0.1);
   }
+}
+
+// What is measured as the lungs' motion is that of their tissue: the seen surfaces follow the ribs up.
+TEST_F(LungBreath, IsWhatTheTableMeasures) {
+  const physiology::Recording& quiet = Breath("quiet");
+  const auto tissue = physiology::ShiftOf(physiology::LoweredInBreath(quiet));
+  const auto surfaces =
+      physiology::ShiftOf(physiology::LoweredLungs(*model_, subject_->parts, quiet.base, quiet.peak));
+  EXPECT_GT(tissue.least, 0);
+  EXPECT_LT(surfaces.least, 0);
+  EXPECT_GT(tissue.base, surfaces.base + 0.001);
 }
 
 TEST_F(LungBreath, MovesUpAtTheTopWhereItIsGlued) {
