@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "server/jobs/queue.h"
+#include "server/jobs/thread_priority.h"
 
 namespace phrenic::jobs {
 
@@ -136,6 +137,7 @@ absl::Status Queue<Job>::Delete(const std::string& id) {
 
 template <typename Job>
 void Queue<Job>::Loop() {
+  LowerThreadPriority();
   while (const std::shared_ptr<Entry> entry = Next()) Run(*entry);
 }
 

@@ -45,7 +45,7 @@ struct QueueOptions {
 
 // Runs the jobs of each owner in the order in which they were added, and of several owners in turn. Keeps each job
 // until it is deleted, its lifetime is over, or its place is needed. Jobs without an owner have no limit of their own.
-// Thread-safe; its own threads run the jobs.
+// Thread-safe; its own threads run the jobs, at a lower priority than sessions have (thread_priority.h).
 //
 // A Job has a type `Message`, a proto message with the fields id, state, progress and problem, and three methods:
 //   absl::Status Run(Progress<Message> progress)

@@ -2,9 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
+#include <thread>
 
 #include "absl/synchronization/notification.h"
 #include "phrenic/v1/study.pb.h"
@@ -104,6 +108,22 @@ TEST_F(QueueTest, JobsRunAndKeepTheirResults) {
   EXPECT_EQ(seen.message.progress(), 1);
   EXPECT_EQ(seen.message.result().scene(), "thorax");
   EXPECT_THAT(queue->List(), SizeIs(1));
+}
+
+// Sessions step and calls are answered before jobs get what is left of the processor.
+TEST_F(QueueTest, JobsAndTheirThreadsHaveALowerPriority) {
+  const auto niceness = [] { return getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())); };
+  std::atomic<int> job = 0, thread_of_job = 0;
+  const auto queue = Make(4);
+  const auto look = [&](StudyProgress) {
+    job = niceness();
+    std::thread([&] { thread_of_job = niceness(); }).join();
+    return absl::OkStatus();
+  };
+  ASSERT_TRUE(Add(*queue, "a", look).ok());
+  WaitForEnd(*queue, "a");
+  EXPECT_GT(job, niceness());
+  EXPECT_EQ(thread_of_job, job);
 }
 
 TEST_F(QueueTest, AFailedJobSaysWhy) {

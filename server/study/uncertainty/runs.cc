@@ -11,7 +11,6 @@ namespace phrenic::study {
 namespace {
 
 constexpr absl::Duration kReportEvery = absl::Milliseconds(100);
-constexpr size_t kMostThreadsOfCore = 4;
 
 // The runs that threads take one after the other. Thread-safe.
 class RunQueue {
@@ -65,7 +64,7 @@ class RunQueue {
 
 size_t ThreadsFor(int wanted, size_t runs) {
   const size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  return std::min({wanted > 0 ? static_cast<size_t>(wanted) : cores, kMostThreadsOfCore * cores, runs});
+  return std::min({wanted > 0 ? static_cast<size_t>(wanted) : cores, cores, runs});
 }
 
 }  // namespace
