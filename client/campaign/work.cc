@@ -96,9 +96,7 @@ absl::StatusOr<Share> ReadShare(const std::string& text) {
 
 absl::Status Work(const Context& context, const std::vector<CampaignCell>& cells, const Share& share,
                   const std::string& data_dir, const CampaignFolder& folder) {
-  service::ServerOptions options;
-  options.data_dir = data_dir;
-  const auto server = service::Server::Start(options);
+  const auto server = service::Server::Start(LocalOptions(data_dir));
   if (!server.ok()) return server.status();
   const auto stub = v1::SessionService::NewStub((*server)->InProcessChannel());
   for (auto i = static_cast<size_t>(share.number); i < cells.size(); i += static_cast<size_t>(share.count)) {

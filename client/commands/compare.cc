@@ -16,6 +16,7 @@
 #include "client/commands/commands.h"
 #include "client/connection/connection.h"
 #include "client/connection/errors.h"
+#include "client/connection/local_run.h"
 #include "client/files/junit.h"
 #include "client/files/motion_file.h"
 #include "client/files/whole_file.h"
@@ -163,7 +164,7 @@ int Compare(const Context& context, const CompareOptions& options) {
   if (context.server_given || IsSession(options.a) || IsSession(options.b)) {
     return CompareOn(context, options, *request, *limits, Connect(context));
   }
-  service::ServerOptions server_options;
+  service::ServerOptions server_options = LocalOptions("");
   server_options.max_message_bytes = INT_MAX;
   auto server = service::Server::Start(server_options);
   if (!server.ok()) return Fail(server.status());

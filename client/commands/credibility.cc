@@ -17,6 +17,7 @@
 #include "client/commands/commands.h"
 #include "client/connection/connection.h"
 #include "client/connection/errors.h"
+#include "client/connection/local_run.h"
 #include "client/connection/wait_for_study.h"
 #include "client/credibility/command_text.h"
 #include "client/credibility/context_file.h"
@@ -419,8 +420,7 @@ absl::StatusOr<v1::CredibilityReport> MakeReport(const Context& context, const C
 }
 
 int Credibility(const Context& context, const CredibilityOptions& options) {
-  service::ServerOptions server_options;
-  server_options.data_dir = options.data_dir;
+  service::ServerOptions server_options = LocalOptions(options.data_dir);
   auto server = service::Server::Start(server_options);
   if (!server.ok()) return Fail(server.status());
   const auto report = MakeReport(context, options, (*server)->InProcessChannel());

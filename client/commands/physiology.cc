@@ -7,6 +7,7 @@
 #include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
 #include "client/connection/errors.h"
+#include "client/connection/local_run.h"
 #include "client/files/junit.h"
 #include "client/files/whole_file.h"
 #include "client/print/output.h"
@@ -108,8 +109,7 @@ int CheckBreaths(const PhysiologyOptions& options, const v1::PhysiologyTable& ta
 int Physiology(const Context& context, const PhysiologyOptions& options) {
   const absl::StatusOr<v1::SceneSource> source = ReadScene(options.scene);
   if (!source.ok()) return Fail(source.status());
-  service::ServerOptions server_options;
-  server_options.data_dir = options.data_dir;
+  service::ServerOptions server_options = LocalOptions(options.data_dir);
   auto server = service::Server::Start(server_options);
   if (!server.ok()) return Fail(server.status());
   v1::CheckPhysiologyRequest request;

@@ -115,8 +115,7 @@ int Replay(const Context& context, const ReplayOptions& options) {
   if (scene.scene.empty()) scene.scene = recorded->session.scene();
   const auto source = ReadScene(scene);
   if (!source.ok()) return Fail(source.status());
-  service::ServerOptions server_options;
-  server_options.data_dir = options.data_dir;
+  service::ServerOptions server_options = LocalOptions(options.data_dir);
   auto server = service::Server::Start(server_options);
   if (!server.ok()) return Fail(server.status());
   return ReplayOn(context, *recorded, *source, **server);

@@ -242,8 +242,7 @@ int RunOn(const Context& context, const RunOptions& options, const RunInput& inp
 int Run(const Context& context, const RunOptions& options) {
   const absl::StatusOr<RunInput> input = ReadRunInput(options);
   if (!input.ok()) return Fail(input.status());
-  service::ServerOptions server_options;
-  server_options.data_dir = options.data_dir;
+  service::ServerOptions server_options = LocalOptions(options.data_dir);
   server_options.step_threads = options.threads;
   if (!options.spool_dir.empty()) server_options.spool_dir = options.spool_dir;
   auto server = service::Server::Start(server_options);

@@ -9,6 +9,7 @@
 #include "client/commands/commands.h"
 #include "client/connection/connection.h"
 #include "client/connection/errors.h"
+#include "client/connection/local_run.h"
 #include "client/connection/wait_for_study.h"
 #include "client/files/junit.h"
 #include "client/files/study_limits.h"
@@ -194,8 +195,7 @@ int Study(const Context& context, const StudyOptions& options) {
   }
   if (context.server_given || options.detach)
     return CreateStudy(context, options, *v1::StudyService::NewStub(Connect(context)));
-  service::ServerOptions server_options;
-  server_options.data_dir = options.data_dir;
+  service::ServerOptions server_options = LocalOptions(options.data_dir);
   auto server = service::Server::Start(server_options);
   if (!server.ok()) return Fail(server.status());
   return CreateStudy(context, options, *v1::StudyService::NewStub((*server)->InProcessChannel()));

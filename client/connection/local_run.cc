@@ -30,6 +30,13 @@ void NoteWarnings(const v1::Session& session, RunCost& cost) {
 
 }  // namespace
 
+service::ServerOptions LocalOptions(const std::string& data_dir) {
+  service::ServerOptions options;
+  options.data_dir = data_dir;
+  options.limits.compile_seconds = 0;
+  return options;
+}
+
 std::int64_t TickAt(double seconds, const v1::Session& session) {
   return static_cast<std::int64_t>(std::ceil(seconds / session.parameters().time_step() - 1e-9));
 }

@@ -9,6 +9,7 @@
 #include "client/connection/context.h"
 #include "client/connection/measure_ranges.h"
 #include "phrenic/v1/session.grpc.pb.h"
+#include "server/service/server_options.h"
 
 namespace phrenic::client {
 
@@ -21,6 +22,9 @@ struct RunCost {
   double residual = 0;                // largest violation of a constraint that was seen [m]
   std::vector<std::string> warnings;  // of the session, the last of each constraint
 };
+
+// Returns the options of an in-process server. Compiling takes as long as it takes: whoever waits can interrupt it.
+service::ServerOptions LocalOptions(const std::string& data_dir);
 
 // Returns the first tick at which a session that starts at t = 0 has simulated `seconds` [s].
 std::int64_t TickAt(double seconds, const v1::Session& session);
