@@ -47,6 +47,7 @@ std::vector<Normal> BlocksOf(const Eigen::MatrixXd& a, const Eigen::VectorXd& u,
     normal.Add({rows.transpose() * rows, rows.transpose() * u.segment<3>(3 * i), 1});
   }
   std::vector<Normal> result;
+  result.reserve(blocks.size());
   for (auto& [cell, normal] : blocks) result.push_back(std::move(normal));
   return result;
 }

@@ -54,6 +54,7 @@ Points Slice(const Points& points, int axis, double from, double to) {
   const std::vector<double> values = Coordinates(points, axis);
   const double low = Quantile(values, from), high = Quantile(values, to);
   std::vector<bool> keep;
+  keep.reserve(values.size());
   for (const double v : values) keep.push_back(v >= low && v <= high);
   return Where(points, keep);
 }

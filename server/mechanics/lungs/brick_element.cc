@@ -37,7 +37,8 @@ BrickElement::BrickElement(double edge, double poisson) : parts_(kBrickParts, Br
   const double gauss[] = {0.5 - std::sqrt(1.0 / 12), 0.5 + std::sqrt(1.0 / 12)};
   const double volume = std::pow(edge / kBrickSplit, 3) / 8;  // of a Gauss point
   for (int p = 0; p < kBrickParts; ++p) {
-    const Eigen::Vector3d low(p % kBrickSplit, p / kBrickSplit % kBrickSplit, p / (kBrickSplit * kBrickSplit));
+    const int row = p / kBrickSplit % kBrickSplit, layer = p / (kBrickSplit * kBrickSplit);
+    const Eigen::Vector3d low(p % kBrickSplit, row, layer);
     for (int c = 0; c < 8; ++c) {
       const Eigen::Vector3d in_part(gauss[c & 1], gauss[c >> 1 & 1], gauss[c >> 2 & 1]);
       const StrainMatrix strain = StrainOf(GradientsAt((low + in_part) / kBrickSplit) / edge);

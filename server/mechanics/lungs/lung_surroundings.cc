@@ -19,7 +19,7 @@ struct Surface {
 
   // Returns the nearest point if the boundary point faces it.
   SurfacePoint Facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {
-    const SurfacePoint near = tree.Nearest(mesh.vertices, boxes, point, kContactReach);
+    SurfacePoint near = tree.Nearest(mesh.vertices, boxes, point, kContactReach);
     if (near.triangle < 0) return near;
     const Eigen::Matrix3d x = mesh.vertices(Eigen::all, tree.triangle(near.triangle));
     const Eigen::Vector3d across = (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).stableNormalized();

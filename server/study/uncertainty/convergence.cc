@@ -97,6 +97,7 @@ absl::StatusOr<v1::ConvergenceTable> StudyConvergence(const v1::CreateStudyReque
   if (!outputs.ok()) return outputs.status();
   const std::vector<ConvergenceVariant> variants = VariantsOf(study, subject);
   std::vector<v1::Parameters> parameters;
+  parameters.reserve(variants.size());
   for (const ConvergenceVariant& variant : variants) parameters.push_back(variant.parameters);
   const auto meshes = static_cast<double>(study.resolutions_mm_size()), of = static_cast<double>(variants.size());
   const auto runs =
