@@ -77,8 +77,7 @@ TEST_F(LungBreath, MovesDownMostAtTheBaseAndTheBack) {
 TEST_F(LungBreath, IsWhatTheTableMeasures) {
   const physiology::Recording& quiet = Breath("quiet");
   const auto tissue = physiology::ShiftOf(physiology::LoweredInBreath(quiet));
-  const auto surfaces =
-      physiology::ShiftOf(physiology::LoweredLungs(*model_, subject_->parts, quiet.base, quiet.peak));
+  const auto surfaces = physiology::ShiftOf(physiology::LoweredLungs(*model_, subject_->parts, quiet.base, quiet.peak));
   EXPECT_GT(tissue.least, 0);
   EXPECT_LT(surfaces.least, 0);
   EXPECT_GT(tissue.base, surfaces.base + 0.001);
