@@ -97,6 +97,30 @@ class SessionsTest(SessionTest):
         self.assertEqual(frames[-1]["cube"].positions.shape, (8, 3))
         session.step(1)
 
+    def test_a_running_session_is_read_anew(self):
+        session = self.session()
+        session.run(speed=1)
+        first, tick = session.state_hash, session.tick
+        for _ in range(1000):
+            if session.frame(()).tick > tick:
+                break
+            time.sleep(0.01)
+        self.assertGreater(session.tick, tick)
+        seen = session.state_hash
+        self.assertNotEqual(seen, first)
+        time.sleep(0.2)
+        self.assertNotEqual(session.state_hash, seen)
+        session.pause()
+        self.assertEqual(session.state_hash, session.state_hash)
+
+    def test_a_joined_session_is_read_anew(self):
+        session = self.session()
+        joined = phrenic.default_server().attach(session.id)
+        start = joined.state_hash
+        session.step(5, read=())
+        self.assertEqual(joined.state_hash, session.state_hash)
+        self.assertNotEqual(joined.state_hash, start)
+
     def test_a_divergence_is_an_error_with_a_remedy(self):
         session = self.session()
         with warnings.catch_warnings():

@@ -129,8 +129,10 @@ class SessionOperations:
         return self._frame_of(answer.state, answer, read)
 
     def _known(self) -> Operation[Frame]:
-        """The last frame if nothing has changed since, else a new one without arrays."""
-        if self._last is not None and self._last.tick == self.status.tick:
+        """The last frame if nothing has changed since, else a new one without arrays. A session that plays, or that
+        others step, has changed."""
+        still = self._owned and self.status.state != session_pb2.SESSION_STATE_PLAYING
+        if still and self._last is not None and self._last.tick == self.status.tick:
             return self._last
         return (yield from self._read(()))
 
