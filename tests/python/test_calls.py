@@ -66,6 +66,13 @@ class CallsTest(unittest.TestCase):
         self.assertEqual(session.step(10, read=()).tick, 10)
         self.assertEqual([(r.ticks, r.expected_tick) for r in self.fake.made("StepSession")], [(10, 0), (7, 3)])
 
+    def test_steps_are_repeated_once(self):
+        session = phrenic.Session("any", server=self.server)
+        self.fake.answers["StepSession"] = failing(UNAVAILABLE, 99, self.step_at(0))
+        with self.assertRaises(errors.Unavailable):
+            session.step(10, read=())
+        self.assertEqual(len(self.fake.made("StepSession")), 2)
+
     def test_steps_of_a_session_that_others_step_are_not_repeated(self):
         session = self.server.attach("class")
         self.fake.answers["StepSession"] = failing(UNAVAILABLE, 9, None)

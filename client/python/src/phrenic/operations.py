@@ -156,7 +156,10 @@ class SessionOperations:
         return {name: np.array([f.x, f.y, f.z]) for name, f in zip(answer.kinds, answer.forces)}
 
     # --- stepping ---
-    def _step(self, ticks: int, read: Sequence[str], timeout: Optional[float]) -> Operation[Frame]:
+    def _step(
+        self, ticks: int, read: Sequence[str], timeout: Optional[float], again: bool = True
+    ) -> Operation[Frame]:
+        """Takes steps. `again`: those that a lost connection left out are taken once more."""
         if read and self._geometry is None:
             yield from self._describe()
         before = self.status.tick
@@ -168,7 +171,7 @@ class SessionOperations:
         try:
             answer = yield Call("SessionService.StepSession", request, timeout or LONG, repeatable=False)
         except Unavailable:
-            if not self._owned:
+            if not self._owned or not again:
                 raise
             return (yield from self._step_to(before, before + ticks, read, timeout))
         self.status = answer.session
@@ -183,7 +186,7 @@ class SessionOperations:
             return frame
         if not before <= frame.tick < after:
             raise Aborted(f"the connection was lost at tick {before}, and the session is at tick {frame.tick} now")
-        return (yield from self._step(after - frame.tick, read, timeout))
+        return (yield from self._step(after - frame.tick, read, timeout, again=False))
 
     def ticks_until(self, time: float) -> int:
         """Number of steps to the simulated time [s], rounded; at least 1."""
