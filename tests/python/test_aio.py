@@ -6,7 +6,8 @@ import unittest
 from pathlib import Path
 
 import phrenic
-from support import SessionTest
+from phrenic.v1 import session_pb2
+from support import FakeServer, SessionTest
 
 
 class AioTest(SessionTest, unittest.IsolatedAsyncioTestCase):
@@ -47,6 +48,18 @@ class AioTest(SessionTest, unittest.IsolatedAsyncioTestCase):
                     await study
                 joined = await server.attach(session.id)
                 self.assertEqual((await joined.step(2)).tick, 2)
+
+    async def test_a_joined_session_reads_no_file_that_its_scene_names(self):
+        fake = FakeServer()
+        self.addCleanup(fake.stop)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "x.textproto")
+            path.write_text("name: 'private'")
+            status = session_pb2.Session(id="class", scene=str(path))
+            fake.answers["GetSession"] = lambda *_: session_pb2.GetSessionResponse(session=status)
+            async with phrenic.aio.connect(fake.address) as server:
+                joined = await server.attach("class")
+        self.assertEqual(joined._source, session_pb2.SceneSource(name=str(path)))
 
     async def test_a_running_session_is_watched(self):
         async with phrenic.aio.Session("cube-springs") as session:

@@ -112,11 +112,20 @@ class Session(SessionOperations):
         self._source = source_of(scene, resolution_mm)
         self._creation: Optional[Operation[Any]] = create(scene, set, preset, id, resolution_mm)
 
-    def _join(self, connection: Connection, status: session_pb2.Session, token: str, owned: bool) -> "Session":
-        session = Session.__new__(Session)
+    @classmethod
+    def _of(
+        cls,
+        connection: Connection,
+        status: session_pb2.Session,
+        token: str,
+        owned: bool,
+        source: Optional[session_pb2.SceneSource] = None,
+    ) -> "Session":
+        session = cls.__new__(cls)
         SessionOperations.__init__(session, status, token, owned)
         session._connection, session._shared, session._creation = connection, True, None
-        session._source = self._source
+        # The name may be that of somebody else's scene text: no file of this machine is read.
+        session._source = source or session_pb2.SceneSource(name=status.scene)
         return session
 
     async def __aenter__(self) -> "Session":
@@ -183,7 +192,7 @@ class Session(SessionOperations):
     async def fork(self, id: str = "", **parameters: Any) -> "Session":
         """As phrenic.Session.fork."""
         made = await self._connection.run(self._fork(id))
-        fork = self._join(self._connection, made.session, made.control_token, owned=True)
+        fork = Session._of(self._connection, made.session, made.control_token, True, self._source)
         if parameters:
             await fork.set(**parameters)
         return fork
@@ -254,9 +263,7 @@ class Server:
 
     async def attach(self, id: str) -> Session:
         """As phrenic.Server.attach."""
-        status = await self.connection.run(attach(id))
-        session = Session(status.scene, server=self)
-        return session._join(self.connection, status, "", owned=False)
+        return Session._of(self.connection, await self.connection.run(attach(id)), "", owned=False)
 
 
 def connect(
