@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,13 +38,14 @@ def export(
     request = export_pb2.CreateExportRequest(session_id=session_id, format=name, file_stem=path.stem)
     job = (yield Call("ExportService.CreateExport", fill(request, options), LONG, repeatable=False)).job
     try:
-        yield from _export_done(job.id, progress)
-        return (yield from _download(job.id, path, known[name].ending == "zip"))
+        summary = yield from _export_done(job.id, progress)
+        return (yield from _download(job.id, path, summary, known[name].ending == "zip"))
     finally:
         yield Call("ExportService.DeleteExport", export_pb2.DeleteExportRequest(export_id=job.id))
 
 
-def _export_done(id: str, progress: Progress) -> Operation[None]:
+def _export_done(id: str, progress: Progress) -> Operation[export_pb2.ExportSummary]:
+    """Waits for the end of an export and returns its summary."""
     seen: list[export_pb2.Export] = []
 
     def note(event: export_pb2.WatchExportResponse) -> None:
@@ -52,28 +54,48 @@ def _export_done(id: str, progress: Progress) -> Operation[None]:
             progress(event.job.progress, "recording")
 
     yield Call("ExportService.WatchExport", export_pb2.WatchExportRequest(export_id=id), LONG, note)
-    if seen[0].state != export_pb2.EXPORT_STATE_DONE:
-        raise FailedPrecondition(seen[0].problem or "the export has not ended")
+    if not seen or seen[0].state != export_pb2.EXPORT_STATE_DONE:
+        raise FailedPrecondition((seen and seen[0].problem) or "the export has not ended")
+    return seen[0].summary
 
 
-def _download(id: str, path: Path, zipped: bool) -> Operation[dict[str, Any]]:
+def _download(
+    id: str, path: Path, summary: export_pb2.ExportSummary, zipped: bool
+) -> Operation[dict[str, Any]]:
+    """Downloads the file of an export, checks it and puts it at the path."""
     part = path.with_name(path.name + ".part")
     try:
         with open(part, "w+b") as file:
             yield from _receive(id, file)
-            file.seek(0)
-            digest = hashlib.sha256(file.read()).hexdigest()
-        exports = (yield Call("ExportService.ListExports", export_pb2.ListExportsRequest())).exports
-        summary = next(each.summary for each in exports if each.id == id)
+            digest = _sha256(file)
         if digest != summary.sha256:
             raise DataLoss(f"{path}: the file arrived damaged")
         if zipped:
-            zipfile.ZipFile(part).extractall(path.parent)  # refuses names outside the folder
+            _unzip(part, path)
         else:
             part.replace(path)
         return row(summary)
     finally:
         part.unlink(missing_ok=True)
+
+
+def _sha256(file: BinaryIO) -> str:
+    file.seek(0)
+    digest = hashlib.sha256()
+    while block := file.read(1 << 20):
+        digest.update(block)
+    return digest.hexdigest()
+
+
+def _unzip(part: Path, path: Path) -> None:
+    """Extracts the files of a motion beside its path: motion.pvd and motion/motion_000000.vtp. Refuses an archive with
+    any other name before it writes a file, so that no other file of the folder is replaced."""
+    stem = re.escape(path.stem)
+    with zipfile.ZipFile(part) as archive:
+        for name in archive.namelist():
+            if name != path.name and not re.fullmatch(rf"{stem}/{stem}_[A-Za-z0-9_]+\.[a-z]+", name):
+                raise FailedPrecondition(f"{path}: the server's archive has the file {name!r}, which is none of this motion")
+        archive.extractall(path.parent)
 
 
 def _receive(id: str, file: BinaryIO) -> Operation[None]:
@@ -118,8 +140,8 @@ def study(
                 progress(event.study.progress, event.study.doing)
 
         yield Call("StudyService.WatchStudy", study_pb2.WatchStudyRequest(study_id=id), LONG, note)
-        if seen[0].state != study_pb2.STUDY_STATE_DONE:
-            raise FailedPrecondition(seen[0].problem or "the study has not ended")
+        if not seen or seen[0].state != study_pb2.STUDY_STATE_DONE:
+            raise FailedPrecondition((seen and seen[0].problem) or "the study has not ended")
         return study_of(seen[0].result, (yield from _page(id)))
     finally:
         yield Call("StudyService.DeleteStudy", study_pb2.DeleteStudyRequest(study_id=id))
