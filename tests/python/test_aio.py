@@ -6,11 +6,16 @@ import unittest
 from pathlib import Path
 
 import phrenic
-from phrenic.v1 import session_pb2
+from phrenic.call import Call, one
+from phrenic.v1 import session_pb2, study_pb2
 from support import FakeServer, SessionTest
 
 
 class AioTest(SessionTest, unittest.IsolatedAsyncioTestCase):
+    async def studies(self, server):
+        answer = await server.connection.run(one(Call("StudyService.ListStudies", study_pb2.ListStudiesRequest())))
+        return list(answer.studies)
+
     async def test_the_same_steps_give_the_same_states(self):
         blocking = self.session().step(30)
         async with phrenic.aio.Session("cube-springs") as session:
@@ -41,11 +46,15 @@ class AioTest(SessionTest, unittest.IsolatedAsyncioTestCase):
                 await server.attach("nothing")
             self.assertIn("thorax", (await server.scenes())["name"])
             async with phrenic.aio.Session("cube-springs", server=server) as session:
-                study = asyncio.create_task(session.study("error", seconds=60, levels=8))
-                await asyncio.sleep(0.3)
+                begun = asyncio.Event()
+                work = session.study("error", lambda *_: begun.set(), seconds=60, levels=8)
+                study = asyncio.create_task(work)
+                await asyncio.wait_for(begun.wait(), 60)
+                self.assertEqual([each.scene for each in await self.studies(server)], ["cube-springs"])
                 study.cancel()
                 with self.assertRaises(asyncio.CancelledError):
                     await study
+                self.assertEqual(await self.studies(server), [])
                 joined = await server.attach(session.id)
                 self.assertEqual((await joined.step(2)).tick, 2)
 

@@ -5,6 +5,7 @@ import struct
 import numpy as np
 
 import phrenic
+from phrenic.v1 import frames_pb2
 from support import SessionTest
 
 BASIS, PRIME, WORD = 0xCBF29CE484222325, 0x100000001B3, (1 << 64) - 1
@@ -32,7 +33,7 @@ def hash_of(state: phrenic.State) -> str:
 
 class StateTest(SessionTest):
     def test_the_hash_of_the_returned_arrays_is_the_state_hash(self):
-        for scene in ("cube-springs", "pressure-lungs"):
+        for scene in ("cube-springs", "pressure-lungs", "muscle"):  # the last has scalar coordinates
             with self.subTest(scene):
                 frame = self.session(scene).step(50)
                 self.assertEqual(hash_of(frame.state), frame.state_hash)
@@ -80,11 +81,28 @@ class StateTest(SessionTest):
             self.assertEqual(session.step(summary["end_tick"], read=()).state_hash, summary["state_hash"])
 
     def test_rigid_and_still_bodies_are_placed(self):
-        frame = self.session("tensegrity-prism").step(5)
+        session = self.session("thorax", preset="deep", resolution_mm=20)
+        frame = session.step(200)
+        placements = {name: body.placement for name, body in frame._geometry.bodies.items()}
+        kinds = {frames_pb2.PLACEMENT_STILL, frames_pb2.PLACEMENT_RIGID, frames_pb2.PLACEMENT_STREAMED}
+        self.assertEqual(set(placements.values()), kinds)
+        moved = {kind: 0.0 for kind in kinds}
         for name in frame.bodies:
-            self.assertEqual(frame[name].positions.shape, frame[name].rest.shape)
-            self.assertTrue(np.isfinite(frame[name].positions).all())
+            body = frame[name]
+            self.assertEqual(body.positions.shape, body.rest.shape)
+            self.assertTrue(np.isfinite(body.positions).all())
+            way = float(np.abs(body.positions - body.rest).max())
+            moved[placements[name]] = max(moved[placements[name]], way)
+            if placements[name] == frames_pb2.PLACEMENT_RIGID:
+                sizes = [np.linalg.norm(points - points[0], axis=1) for points in (body.positions, body.rest)]
+                np.testing.assert_allclose(*sizes, atol=1e-6)
+        self.assertEqual(moved[frames_pb2.PLACEMENT_STILL], 0)
+        self.assertGreater(moved[frames_pb2.PLACEMENT_RIGID], 0)
+        self.assertGreater(moved[frames_pb2.PLACEMENT_STREAMED], 0)
 
     def test_a_coordinate_has_a_name(self):
-        state = self.session("pressure-lungs").step(1).state
-        self.assertEqual(len(state.named_scalars), len(state.layout.scalars))
+        state = self.session("muscle").step(20).state
+        self.assertEqual(list(state.named_scalars), [row.name for row in state.layout.scalars])
+        self.assertIn("muscle:dome:stretch-rate-0", state.named_scalars)
+        np.testing.assert_array_equal(list(state.named_scalars.values()), state.scalars)
+        self.assertTrue(any(state.named_scalars.values()))
