@@ -8,7 +8,7 @@ import grpc
 import phrenic
 from phrenic import errors
 from phrenic.connection import target_of
-from phrenic.v1 import session_pb2
+from phrenic.v1 import session_pb2, state_pb2
 from support import FakeServer, failing
 
 UNAVAILABLE = grpc.StatusCode.UNAVAILABLE
@@ -91,6 +91,17 @@ class CallsTest(unittest.TestCase):
         for code in grpc.StatusCode:
             if code != grpc.StatusCode.OK:
                 self.assertEqual(errors.make_error(code.name, "text").code, code.name)
+
+    def test_an_error_whose_remedy_depends_on_the_call_has_the_text_of_the_server_alone(self):
+        for code in ("FAILED_PRECONDITION", "RESOURCE_EXHAUSTED"):
+            self.assertEqual(str(errors.make_error(code, "the export is not done: wait for it")),
+                             "the export is not done: wait for it")  # fmt: skip
+
+    def test_what_is_constant_is_read_for_the_parts_that_need_it(self):
+        session = phrenic.Session("any", server=self.server)
+        for parts in (("positions",), ("velocities", "scalars")):
+            session.step(1, read=parts)  # this server has no GetGeometry
+        self.assertEqual([list(r.read) for r in self.fake.made("GetState")], [[state_pb2.STATE_PART_LAYOUT]])
 
     def test_a_token_does_not_cross_a_network_in_the_clear(self):
         with self.assertRaisesRegex(errors.InvalidArgument, "https://example.org:1"):

@@ -62,6 +62,29 @@ class StateTest(SessionTest):
         with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "did you mean positions"):
             self.session().step(1, read=("position",))
 
+    def test_a_part_that_is_read_and_has_no_numbers_is_empty(self):
+        for frame in (self.session().step(1), self.session().frame()):
+            self.assertEqual((frame.state.scalars.shape, frame.state.scalar_rates.shape), ((0,), (0,)))
+            self.assertEqual(frame.state.named_scalars, {})
+        self.assertIsNone(self.session().step(1, read=("positions",)).state.scalars)
+
+    def test_bodies_need_no_layout(self):
+        session = self.session()
+        self.assertEqual(session.step(1, read=("bodies",))["cube"].positions.shape, (8, 3))
+        self.assertIsNone(session._layout)
+        self.assertEqual(session.step(1).state.positions_of("cube").shape, (8, 3))
+
+    def test_a_phase_means_the_same_in_every_frame(self):
+        session = self.session()
+        frame = session.step(1200)
+        self.assertGreater(frame.state.phase, 1)
+        self.assertEqual(frame.phase, frame.state.phase % 1)
+        unread = session.step(1, read=())
+        self.assertTrue(np.isnan(unread.phase) and np.isnan(unread.state.phase))
+        watched = next(session.watch())
+        self.assertLess(abs(watched.phase - session.frame(("positions",)).phase), 1e-6)
+        self.assertTrue(np.isnan(watched.state.phase), "a stream does not count breaths")
+
     def test_bodies_are_the_state_in_float32_and_share_the_memory_of_the_answer(self):
         frame = self.session().step(20)
         seen = frame["cube"].positions

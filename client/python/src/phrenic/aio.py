@@ -25,7 +25,7 @@ from .frame import Frame
 from .operations import EVERYTHING, Scene, SessionOperations, attach, create, source_of
 from .server import default_server
 from .table import Table
-from .v1 import server_pb2, session_pb2
+from .v1 import server_pb2, session_pb2, state_pb2
 
 
 class Connection:
@@ -207,7 +207,7 @@ class Session(SessionOperations):
 
     async def watch(self, max_fps: float = 60) -> AsyncIterator[Frame]:
         """As phrenic.Session.watch."""
-        await self._connection.run(self._describe())
+        await self._connection.run(self._describe([state_pb2.STATE_PART_BODIES]))
         events = self._connection.open(self._watch_call(max_fps))
         try:
             async for event in events:

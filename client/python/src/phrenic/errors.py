@@ -74,17 +74,16 @@ class PermissionDenied(Error, PermissionError):
 
 
 class ResourceExhausted(Error):
-    """A limit of the server is reached; the message names it."""
+    """A limit of the server is reached; the message names it and what to do."""
 
     code = "RESOURCE_EXHAUSTED"
-    remedy = "close sessions that are done (use `with`), or raise the limit of phrenicd that the message names"
 
 
 class FailedPrecondition(Error):
-    """The session is not in a state for this call: it has diverged, or the tick is past."""
+    """What the call needs is not so: the session has diverged, the tick is past, an export is not done. The message says
+    what, and what to do."""
 
     code = "FAILED_PRECONDITION"
-    remedy = "reset() a session that has diverged, and use a smaller time_step or an implicit integrator"
 
 
 class Aborted(Error):

@@ -7,6 +7,7 @@ bandwidth that loopback has.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Iterable, Mapping, Optional, Sequence
 
@@ -52,11 +53,12 @@ class Body:
 @dataclass(frozen=True)
 class State:
     """The simulated state, float64, bit for bit what `state_hash` is computed from. Parts that were not read are
-    None."""
+    None; a part that was read and has no numbers is an empty array."""
 
     tick: int
     time: float
     phase: float
+    """Breaths since the start. NaN where the server does not send it: after step(read=()) and in a frame of watch()."""
     positions: Optional[np.ndarray] = None
     """(n, 3) [m] of all simulated vertices."""
     velocities: Optional[np.ndarray] = None
@@ -95,7 +97,8 @@ class Frame:
     time: float
     """Simulated time [s]."""
     phase: float
-    """Elapsed fraction of the present breath, 0 to 1."""
+    """Elapsed fraction of the present breath, 0 to 1. NaN after step(read=()): the server sends it with a part of the
+    state."""
     measures: Mapping[str, float]
     """The scene's measures by name, in SI units."""
     state_hash: str
@@ -154,21 +157,22 @@ def frame_of(
     measures: Sequence[measures_pb2.MeasureReading],
     layout: state_pb2.StateLayout,
     geometry: Optional[Geometry],
+    parts: Sequence[int],
 ) -> Frame:
-    """Returns the frame of a lossless answer; `geometry` is None if bodies were not read."""
+    """Returns the frame of a lossless answer to a request for `parts`; `geometry` is None if bodies were not read."""
 
-    def rows(data: bytes, width: int) -> Optional[np.ndarray]:
-        return vectors(data, "<f8", width) if data else None
+    def rows(part: int, data: bytes) -> Optional[np.ndarray]:
+        return vectors(data, "<f8") if part in parts else None
 
     def numbers(data: bytes) -> Optional[np.ndarray]:
-        return np.frombuffer(data, "<f8") if data else None
+        return np.frombuffer(data, "<f8") if state_pb2.STATE_PART_SCALARS in parts else None
 
     state = State(
         arrays.tick,
         arrays.time,
         arrays.phase,
-        rows(arrays.positions, 3),
-        rows(arrays.velocities, 3),
+        rows(state_pb2.STATE_PART_POSITIONS, arrays.positions),
+        rows(state_pb2.STATE_PART_VELOCITIES, arrays.velocities),
         numbers(arrays.scalars),
         numbers(arrays.scalar_rates),
         layout,
@@ -188,8 +192,8 @@ def frame_of(
 
 
 def watched_frame(frame: frames_pb2.Frame, geometry: Geometry) -> Frame:
-    """Returns the frame of a stream."""
-    state = State(frame.tick, frame.time, frame.phase)
+    """Returns the frame of a stream, which has the fraction of a breath alone."""
+    state = State(frame.tick, frame.time, math.nan)
     return Frame(
         frame.tick,
         frame.time,

@@ -101,32 +101,32 @@ class SessionOperations:
         return f"<{type(self).__name__} {self.id} of {self.scene} at tick {self.tick}>"
 
     # --- reading ---
-    def _describe(self) -> Operation[Geometry]:
-        """Reads what is constant, once."""
-        if self._geometry is None:
+    def _describe(self, parts: Iterable[int]) -> Operation[None]:
+        """Reads what is constant and belongs to these parts, once."""
+        if self._geometry is None and state_pb2.STATE_PART_BODIES in parts:
             bodies: list[frames_pb2.GetGeometryResponse] = []
             request = frames_pb2.GetGeometryRequest(session_id=self.id)
             yield Call("FrameService.GetGeometry", request, LONG, bodies.append, repeatable=False)
-            layout = yield Call("SessionService.GetState", self._state_request(["layout"]))
-            self._layout = layout.state.layout
             self._geometry = Geometry(bodies)
-        return self._geometry
+        if self._layout is None and any(part != state_pb2.STATE_PART_BODIES for part in parts):
+            answer = yield Call("SessionService.GetState", self._state_request([state_pb2.STATE_PART_LAYOUT]))
+            self._layout = answer.state.layout
 
-    def _state_request(self, read: Iterable[str]) -> session_pb2.GetStateRequest:
-        return session_pb2.GetStateRequest(session_id=self.id, read=parts_of(tuple(read)))
+    def _state_request(self, parts: Iterable[int]) -> session_pb2.GetStateRequest:
+        return session_pb2.GetStateRequest(session_id=self.id, read=parts)
 
-    def _frame_of(self, arrays: state_pb2.StateArrays, answer: Any, read: Sequence[str]) -> Frame:
-        geometry = self._geometry if "bodies" in read else None
+    def _frame_of(self, arrays: state_pb2.StateArrays, answer: Any, parts: Sequence[int]) -> Frame:
+        geometry = self._geometry if state_pb2.STATE_PART_BODIES in parts else None
         layout = self._layout or state_pb2.StateLayout()
-        self._last = frame_of(arrays, answer.state_hash, answer.measures, layout, geometry)
+        self._last = frame_of(arrays, answer.state_hash, answer.measures, layout, geometry, parts)
         self.status.tick, self.status.time = arrays.tick, arrays.time
         return self._last
 
     def _read(self, read: Sequence[str]) -> Operation[Frame]:
-        if read:
-            yield from self._describe()
-        answer = yield Call("SessionService.GetState", self._state_request(read))
-        return self._frame_of(answer.state, answer, read)
+        parts = parts_of(tuple(read))
+        yield from self._describe(parts)
+        answer = yield Call("SessionService.GetState", self._state_request(parts))
+        return self._frame_of(answer.state, answer, parts)
 
     def _known(self) -> Operation[Frame]:
         """The last frame if nothing has changed since, else a new one without arrays. A session that plays, or that
@@ -160,11 +160,11 @@ class SessionOperations:
         self, ticks: int, read: Sequence[str], timeout: Optional[float], again: bool = True
     ) -> Operation[Frame]:
         """Takes steps. `again`: those that a lost connection left out are taken once more."""
-        if read and self._geometry is None:
-            yield from self._describe()
+        parts = parts_of(tuple(read))
+        yield from self._describe(parts)
         before = self.status.tick
         request = session_pb2.StepSessionRequest(
-            session_id=self.id, ticks=ticks, control_token=self._token, read=parts_of(tuple(read))
+            session_id=self.id, ticks=ticks, control_token=self._token, read=parts
         )
         if self._owned:
             request.expected_tick = before
@@ -175,8 +175,8 @@ class SessionOperations:
                 raise
             return (yield from self._step_to(before, before + ticks, read, timeout))
         self.status = answer.session
-        arrays = answer.state if read else state_pb2.StateArrays(tick=self.tick, time=self.time, phase=math.nan)
-        return self._frame_of(arrays, answer, read)
+        arrays = answer.state if parts else state_pb2.StateArrays(tick=self.tick, time=self.time, phase=math.nan)
+        return self._frame_of(arrays, answer, parts)
 
     def _step_to(self, before: int, after: int, read: Sequence[str], timeout: Optional[float]) -> Operation[Frame]:
         """After a lost connection: takes the steps that were not carried out. The run is deterministic and nobody else

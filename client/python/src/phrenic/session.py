@@ -13,7 +13,7 @@ from .connection import Connection
 from .errors import error_of
 from .frame import Frame
 from .operations import EVERYTHING, Scene, SessionOperations, create, source_of
-from .v1 import session_pb2
+from .v1 import session_pb2, state_pb2
 
 if TYPE_CHECKING:
     from .server import Server
@@ -84,7 +84,7 @@ class Session(SessionOperations):
     # --- stepping ---
     def step(self, ticks: int = 1, read: Sequence[str] = EVERYTHING, timeout: Optional[float] = None) -> Frame:
         """Takes steps and returns the state after the last one without loss. `read`: parts to return; fewer are faster,
-        () returns measures and the hash alone. OutOfRange if the session diverges."""
+        () returns measures and the hash alone, and NaN as the phase. OutOfRange if the session diverges."""
         return self._do(self._step(ticks, read, timeout))
 
     def play(self, seconds: float, fps: float = 60, read: Sequence[str] = ("bodies",)) -> Iterator[Frame]:
@@ -173,7 +173,7 @@ class Session(SessionOperations):
     def watch(self, max_fps: float = 60) -> Iterator[Frame]:
         """Yields the newest frame of a session that runs, as a viewer sees it: a slow loop misses frames. Ends by
         `break`."""
-        self._do(self._describe())
+        self._do(self._describe([state_pb2.STATE_PART_BODIES]))
         events = self._connection.open(self._watch_call(max_fps))
         try:
             for event in events:
