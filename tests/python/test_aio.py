@@ -2,8 +2,10 @@
 
 import asyncio
 import tempfile
+import threading
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import phrenic
 from phrenic.call import Call, one
@@ -69,6 +71,32 @@ class AioTest(SessionTest, unittest.IsolatedAsyncioTestCase):
             async with phrenic.aio.connect(fake.address) as server:
                 joined = await server.attach("class")
         self.assertEqual(joined._source, session_pb2.SceneSource(name=str(path)))
+
+    async def test_a_server_starts_beside_the_loop(self):
+        threads = []
+
+        def start():
+            threads.append(threading.current_thread())
+            return phrenic.default_server()
+
+        with mock.patch("phrenic.aio.default_server", start):
+            session = phrenic.aio.Session("cube-springs")
+            self.assertEqual(threads, [])
+            with self.assertRaisesRegex(phrenic.errors.FailedPrecondition, "async with"):
+                await session.step(1)
+            await session.close()
+            async with session:
+                self.assertEqual((await session.step(1)).tick, 1)
+        self.assertEqual(len(threads), 1)
+        self.assertIsNot(threads[0], threading.current_thread())
+
+    async def test_a_session_that_cannot_begin_closes_its_connection(self):
+        session = phrenic.aio.Session("thorux")
+        with self.assertRaisesRegex(phrenic.errors.NotFound, "thorax"):
+            async with session:
+                self.fail("it began")
+        with self.assertRaisesRegex(Exception, "closed"):
+            await session.step(1)
 
     async def test_a_running_session_is_watched(self):
         async with phrenic.aio.Session("cube-springs") as session:

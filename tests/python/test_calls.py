@@ -7,7 +7,7 @@ import grpc
 
 import phrenic
 from phrenic import errors
-from phrenic.connection import target_of
+from phrenic.connection import Channel, target_of
 from phrenic.v1 import session_pb2, state_pb2
 from support import FakeServer, failing
 
@@ -102,6 +102,11 @@ class CallsTest(unittest.TestCase):
         for parts in (("positions",), ("velocities", "scalars")):
             session.step(1, read=parts)  # this server has no GetGeometry
         self.assertEqual([list(r.read) for r in self.fake.made("GetState")], [[state_pb2.STATE_PART_LAYOUT]])
+
+    def test_both_clients_open_their_channel_alike(self):
+        for each in (phrenic.connection.Connection, phrenic.aio.Connection):
+            self.assertTrue(issubclass(each, Channel))
+            self.assertIs(each.open, Channel.open)
 
     def test_a_token_does_not_cross_a_network_in_the_clear(self):
         with self.assertRaisesRegex(errors.InvalidArgument, "https://example.org:1"):

@@ -18,9 +18,9 @@ import grpc
 import grpc.aio
 
 from . import jobs
-from .call import SERVICES, Call, Operation, T, delay_before_repeat, one
-from .connection import Target, Tls, channel_options, credentials_of, target_of
-from .errors import error_of
+from .call import Call, Operation, T, delay_before_repeat, one
+from .connection import Channel, Target, Tls, target_of
+from .errors import FailedPrecondition, error_of
 from .frame import Frame
 from .operations import EVERYTHING, Scene, SessionOperations, attach, create, source_of
 from .server import default_server
@@ -28,17 +28,11 @@ from .table import Table
 from .v1 import server_pb2, session_pb2, state_pb2
 
 
-class Connection:
+class Connection(Channel):
     """An asyncio connection, of one event loop."""
 
     def __init__(self, target: Target) -> None:
-        self.target = target
-        self._channel = (
-            grpc.aio.secure_channel(target.host, credentials_of(target.tls), channel_options())
-            if target.tls
-            else grpc.aio.insecure_channel(target.host, channel_options())
-        )
-        self._stubs = {name: make(self._channel) for name, make in SERVICES.items()}
+        super().__init__(target, grpc.aio)
 
     async def close(self) -> None:
         """Ends the calls in progress."""
@@ -58,14 +52,6 @@ class Connection:
         except StopIteration as done:
             return done.value
 
-    def open(self, call: Call) -> Any:
-        """Starts a streaming call without a deadline; returns its messages."""
-        return self._method(call)(call.request, metadata=[*self.target.metadata, *call.metadata])
-
-    def _method(self, call: Call) -> Any:
-        service, _, method = call.method.partition(".")
-        return getattr(self._stubs[service], method)
-
     async def _perform(self, call: Call) -> Any:
         attempt = 0
         while True:
@@ -80,11 +66,7 @@ class Connection:
             attempt += 1
 
     async def _once(self, call: Call) -> Any:
-        answer = self._method(call)(
-            call.request,
-            timeout=call.deadline or self.target.timeout,
-            metadata=[*self.target.metadata, *call.metadata],
-        )
+        answer = self.open(call, call.deadline or self.target.timeout)
         if call.each is None:
             return await answer
         async for message in answer:
@@ -107,10 +89,15 @@ class Session(SessionOperations):
         server: Optional["Server"] = None,
     ) -> None:
         super().__init__(session_pb2.Session(), "", owned=True)
-        self._connection = server.connection if server else Connection(default_server().connection.target)
+        self._connection: Optional[Connection] = server.connection if server else None
         self._shared = server is not None
         self._source = source_of(scene, resolution_mm)
         self._creation: Optional[Operation[Any]] = create(scene, set, preset, id, resolution_mm)
+
+    async def _do(self, operation: Operation[T]) -> T:
+        if self._connection is None:
+            raise FailedPrecondition("the session has not begun: use `async with`")
+        return await self._connection.run(operation)
 
     @classmethod
     def _of(
@@ -130,7 +117,13 @@ class Session(SessionOperations):
 
     async def __aenter__(self) -> "Session":
         if self._creation is not None:
-            made = await self._connection.run(self._creation)
+            if self._connection is None:  # the start of a server takes a while
+                self._connection = Connection((await asyncio.to_thread(default_server)).connection.target)
+            try:
+                made = await self._do(self._creation)
+            except BaseException:
+                await self.close()
+                raise
             self.status, self._token, self._creation = made.session, made.control_token, None
         return self
 
@@ -140,13 +133,13 @@ class Session(SessionOperations):
     async def close(self) -> None:
         """Deletes the session, unless it was joined by attach() or has not begun."""
         if self._owned and self._creation is None:
-            await self._connection.run(self._delete())
-        if not self._shared:
+            await self._do(self._delete())
+        if self._connection is not None and not self._shared:
             await self._connection.close()
 
     async def step(self, ticks: int = 1, read: Sequence[str] = EVERYTHING, timeout: Optional[float] = None) -> Frame:
         """As phrenic.Session.step."""
-        return await self._connection.run(self._step(ticks, read, timeout))
+        return await self._do(self._step(ticks, read, timeout))
 
     async def play(self, seconds: float, fps: float = 60, read: Sequence[str] = ("bodies",)) -> AsyncIterator[Frame]:
         """As phrenic.Session.play."""
@@ -155,43 +148,43 @@ class Session(SessionOperations):
 
     async def frame(self, read: Sequence[str] = EVERYTHING) -> Frame:
         """As phrenic.Session.frame."""
-        return await self._connection.run(self._read(read))
+        return await self._do(self._read(read))
 
     async def measure(self, name: str) -> float:
         """As phrenic.Session.measure."""
-        return await self._connection.run(self._measure(name))
+        return await self._do(self._measure(name))
 
     async def measures(self) -> dict[str, float]:
         """All of the scene's measures."""
-        return await self._connection.run(self._measures())
+        return await self._do(self._measures())
 
     async def state_hash(self) -> str:
         """As phrenic.Session.state_hash."""
-        return await self._connection.run(self._hash())
+        return await self._do(self._hash())
 
     async def forces(self, body: str, vertex: Optional[int] = None, kind: str = "") -> Any:
         """As phrenic.Session.forces."""
-        return await self._connection.run(self._forces(body, vertex, kind))
+        return await self._do(self._forces(body, vertex, kind))
 
     async def set(self, preset: str = "", at_tick: Optional[int] = None, **parameters: Any) -> None:
         """As phrenic.Session.set."""
-        await self._connection.run(self._set(preset, at_tick, parameters))
+        await self._do(self._set(preset, at_tick, parameters))
 
     async def pull(self, body: str, vertex: int, force: Sequence[float]) -> None:
         """As phrenic.Session.pull."""
-        await self._connection.run(self._pull(body, vertex, force))
+        await self._do(self._pull(body, vertex, force))
 
     async def release(self) -> None:
         """As phrenic.Session.release."""
-        await self._connection.run(self._release())
+        await self._do(self._release())
 
     async def reset(self) -> None:
         """As phrenic.Session.reset."""
-        await self._connection.run(self._reset())
+        await self._do(self._reset())
 
     async def fork(self, id: str = "", **parameters: Any) -> "Session":
         """As phrenic.Session.fork."""
-        made = await self._connection.run(self._fork(id))
+        made = await self._do(self._fork(id))
         fork = Session._of(self._connection, made.session, made.control_token, True, self._source)
         if parameters:
             await fork.set(**parameters)
@@ -199,15 +192,15 @@ class Session(SessionOperations):
 
     async def run(self, speed: float = 1, until: float = 0) -> None:
         """As phrenic.Session.run."""
-        await self._connection.run(self._run_on(speed, until))
+        await self._do(self._run_on(speed, until))
 
     async def pause(self) -> None:
         """As phrenic.Session.pause."""
-        await self._connection.run(self._pause())
+        await self._do(self._pause())
 
     async def watch(self, max_fps: float = 60) -> AsyncIterator[Frame]:
         """As phrenic.Session.watch."""
-        await self._connection.run(self._describe([state_pb2.STATE_PART_BODIES]))
+        await self._do(self._describe([state_pb2.STATE_PART_BODIES]))
         events = self._connection.open(self._watch_call(max_fps))
         try:
             async for event in events:
@@ -224,21 +217,21 @@ class Session(SessionOperations):
     ) -> dict[str, Any]:
         """As phrenic.Session.export."""
         fields = {"seconds": seconds, "frames_per_second": fps, **options}
-        return await self._connection.run(jobs.export(self.id, path, fields, None))
+        return await self._do(jobs.export(self.id, path, fields, None))
 
     async def study(self, kind: str, progress: jobs.Progress = None, **options: Any) -> jobs.Study:
         """As phrenic.Session.study: study("error", levels=4)."""
         operation = jobs.study(kind, self._source, self.status.parameters, options, progress)
-        return await self._connection.run(operation)
+        return await self._do(operation)
 
     async def physiology(self, presets: Sequence[str] = (), progress: jobs.Progress = None) -> jobs.Physiology:
         """As phrenic.Session.physiology."""
-        return await self._connection.run(jobs.physiology(self._source, presets, progress))
+        return await self._do(jobs.physiology(self._source, presets, progress))
 
     async def compare(self, other: Union["Session", str, Path], body: str = "", **options: Any) -> jobs.Comparison:
         """As phrenic.Session.compare."""
         operation = jobs.comparison(self.id, getattr(other, "id", None), other, body, options)
-        return await self._connection.run(operation)
+        return await self._do(operation)
 
 
 class Server:

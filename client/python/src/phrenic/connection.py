@@ -106,17 +106,32 @@ def credentials_of(tls: Tls) -> grpc.ChannelCredentials:
     return grpc.ssl_channel_credentials(read(tls.ca), read(tls.key), read(tls.cert))
 
 
-class Connection:
+class Channel:
+    """What both connections share: a channel of gRPC and its stubs."""
+
+    def __init__(self, target: Target, api: Any) -> None:
+        """`api`: grpc or grpc.aio."""
+        self.target = target
+        self._channel = (
+            api.secure_channel(target.host, credentials_of(target.tls), channel_options())
+            if target.tls
+            else api.insecure_channel(target.host, channel_options())
+        )
+        self._stubs = {name: make(self._channel) for name, make in SERVICES.items()}
+
+    def open(self, call: Call, timeout: Optional[float] = None) -> Any:
+        """Starts a call; returns its answer, or the messages of a streaming one. Without `timeout` [s] it has no
+        deadline."""
+        service, _, method = call.method.partition(".")
+        metadata = [*self.target.metadata, *call.metadata]
+        return getattr(self._stubs[service], method)(call.request, timeout=timeout, metadata=metadata)
+
+
+class Connection(Channel):
     """A blocking connection. Thread-safe. Does not connect before the first call."""
 
     def __init__(self, target: Target) -> None:
-        self.target = target
-        self._channel = (
-            grpc.secure_channel(target.host, credentials_of(target.tls), channel_options())
-            if target.tls
-            else grpc.insecure_channel(target.host, channel_options())
-        )
-        self._stubs = {name: make(self._channel) for name, make in SERVICES.items()}
+        super().__init__(target, grpc)
 
     def close(self) -> None:
         """Ends the calls in progress."""
@@ -136,14 +151,6 @@ class Connection:
         except StopIteration as done:
             return done.value
 
-    def open(self, call: Call) -> Any:
-        """Starts a streaming call without a deadline; returns its messages."""
-        return self._method(call)(call.request, metadata=[*self.target.metadata, *call.metadata])
-
-    def _method(self, call: Call) -> Any:
-        service, _, method = call.method.partition(".")
-        return getattr(self._stubs[service], method)
-
     def _perform(self, call: Call) -> Any:
         attempt = 0
         while True:
@@ -158,11 +165,7 @@ class Connection:
             attempt += 1
 
     def _once(self, call: Call) -> Any:
-        answer = self._method(call)(
-            call.request,
-            timeout=call.deadline or self.target.timeout,
-            metadata=[*self.target.metadata, *call.metadata],
-        )
+        answer = self.open(call, call.deadline or self.target.timeout)
         if call.each is None:
             return answer
         for message in answer:
