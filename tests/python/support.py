@@ -49,7 +49,7 @@ class FakeServer(server_pb2_grpc.ServerServiceServicer, session_pb2_grpc.Session
         return self.answers[method](request, context) if method in self.answers else default
 
     def GetServer(self, request, context):  # noqa: N802
-        return self._answer("GetServer", request, context, server_pb2.GetServerResponse(version="0.1.0"))
+        return self._answer("GetServer", request, context, server_pb2.GetServerResponse(version=phrenic.__version__))
 
     def GetSession(self, request, context):  # noqa: N802
         session = session_pb2.Session(id=request.session_id)
