@@ -94,10 +94,13 @@ class Session(SessionOperations):
         self._source = source_of(scene, resolution_mm)
         self._creation: Optional[Operation[Any]] = create(scene, set, preset, id, resolution_mm)
 
-    async def _do(self, operation: Operation[T]) -> T:
+    def _begun(self) -> Connection:
         if self._connection is None:
             raise FailedPrecondition("the session has not begun: use `async with`")
-        return await self._connection.run(operation)
+        return self._connection
+
+    async def _do(self, operation: Operation[T]) -> T:
+        return await self._begun().run(operation)
 
     @classmethod
     def _of(
@@ -185,7 +188,7 @@ class Session(SessionOperations):
     async def fork(self, id: str = "", **parameters: Any) -> "Session":
         """As phrenic.Session.fork."""
         made = await self._do(self._fork(id))
-        fork = Session._of(self._connection, made.session, made.control_token, True, self._source)
+        fork = Session._of(self._begun(), made.session, made.control_token, True, self._source)
         if parameters:
             await fork.set(**parameters)
         return fork
@@ -201,7 +204,7 @@ class Session(SessionOperations):
     async def watch(self, max_fps: float = 60) -> AsyncIterator[Frame]:
         """As phrenic.Session.watch."""
         await self._do(self._describe([state_pb2.STATE_PART_BODIES]))
-        events = self._connection.open(self._watch_call(max_fps))
+        events = self._begun().open(self._watch_call(max_fps))
         try:
             async for event in events:
                 frame = self._noted(event)

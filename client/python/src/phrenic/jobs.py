@@ -94,7 +94,7 @@ def _unzip(part: Path, path: Path) -> None:
     with zipfile.ZipFile(part) as archive:
         for name in archive.namelist():
             if name != path.name and not re.fullmatch(rf"{stem}/{stem}_[A-Za-z0-9_]+\.[a-z]+", name):
-                raise FailedPrecondition(f"{path}: the server's archive has the file {name!r}, which is none of this motion")
+                raise FailedPrecondition(f"{path}: the server's archive has a file that is none of this motion: {name!r}")
         archive.extractall(path.parent)
 
 
