@@ -13,6 +13,7 @@
 #include "client/commands/commands.h"
 #include "client/connection/errors.h"
 #include "client/files/whole_file.h"
+#include "client/print/output.h"
 #include "client/print/table.h"
 #include "client/terminal/progress.h"
 #include "server/calibrate/preset_text.h"
@@ -179,7 +180,7 @@ void PrintFoundJson(const std::string& command, const Calibration& found, const 
   const nlohmann::json json = {{"command", command},         {"reached", found.reached}, {"reason", found.reason},
                                {"residual", found.residual}, {"breaths", found.breaths}, {"parameters", parameters},
                                {"measures", measures},       {"preset", preset}};
-  std::cout << json.dump(1) << "\n";
+  PrintJson(json);
 }
 
 void PrintCalibration(const Context& context, const std::string& command, const Calibration& found,

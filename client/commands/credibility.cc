@@ -209,6 +209,10 @@ class EvidenceMaker {
     const auto result = options_.orders.empty() ? RunStudy(request, "orders")
                                                 : ReadStudy(options_.orders, "error", v1::StudyResult::kError);
     if (!result.ok()) return result.status();
+    if (result->scene() != use_.order_scene()) {
+      evidence.of_other_scenes.push_back(
+          absl::StrCat("orders (", options_.orders, "), of ", result->scene(), ", not ", use_.order_scene()));
+    }
     evidence.orders = OrdersOf(result->error());
     return absl::OkStatus();
   }
@@ -319,6 +323,25 @@ void AddVersion(const std::string& of, const std::string& is, Evidence& evidence
   row.set_is(is);
 }
 
+// Returns the command that was typed, without where its output goes.
+std::string CommandOf(const CredibilityOptions& options) {
+  std::string line =
+      absl::StrCat("phrenic credibility ", ShellWord(options.scene.scene), " --use ", ShellWord(options.use));
+  const auto add = [&line](const char* option, const std::string& value) {
+    if (!value.empty()) absl::StrAppend(&line, " --", option, " ", ShellWord(value));
+  };
+  if (options.scene.resolution_mm > 0) add("resolution", schema::FormatNumber(options.scene.resolution_mm));
+  add("exact", options.exact);
+  add("orders", options.orders);
+  add("convergence", options.convergence);
+  add("sensitivity", options.sensitivity);
+  add("uncertainty", options.uncertainty);
+  add("physiology", options.physiology);
+  for (const std::string& each : options.evidence) add("evidence", each);
+  if (options.budget != CredibilityOptions().budget) add("budget", schema::FormatNumber(options.budget));
+  return line;
+}
+
 void AddVersions(const CredibilityOptions& options, const std::string& use_text, Evidence& evidence) {
   AddVersion("Phrenic", PHRENIC_VERSION, evidence);
   AddVersion("scene", options.scene.scene, evidence);
@@ -334,9 +357,7 @@ void AddVersions(const CredibilityOptions& options, const std::string& use_text,
   utsname machine{};
   if (uname(&machine) == 0) AddVersion("machine", absl::StrCat(machine.sysname, " ", machine.machine), evidence);
   AddVersion("made", absl::FormatTime("%Y-%m-%d %H:%M UTC", absl::Now(), absl::UTCTimeZone()), evidence);
-  AddVersion("command",
-             absl::StrCat("phrenic credibility ", ShellWord(options.scene.scene), " --use ", ShellWord(options.use)),
-             evidence);
+  AddVersion("command", CommandOf(options), evidence);
 }
 
 void PrintCredibility(const v1::CredibilityReport& report) {

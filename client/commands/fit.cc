@@ -14,6 +14,7 @@
 #include "client/files/scene_lungs.h"
 #include "client/files/whole_file.h"
 #include "client/print/motion_fit.h"
+#include "client/print/output.h"
 #include "client/terminal/progress.h"
 #include "server/fit/motion_fit.h"
 #include "server/fit/read_landmarks.h"
@@ -65,7 +66,7 @@ int RegisterPerson(const Context& context, const RegisterOptions& options) {
   if (!registered.ok()) return FailFit(context, registered.status());
   PrintDoubts(*registered);
   if (context.json()) {
-    std::cout << RegistrationJson(*registered).dump(1) << "\n";
+    PrintJson(RegistrationJson(*registered));
   } else if (context.output == Output::kCsv) {
     PrintRegistrationCsv(*registered);
   } else {
@@ -111,7 +112,7 @@ int FitLandmarks(const Context& context, const FitCommandOptions& options) {
   if (!found.ok()) return FailFit(context, found.status());
   PrintDoubts(found->registered);
   if (context.json()) {
-    std::cout << FitJson(*found, options.fit).dump(1) << "\n";
+    PrintJson(FitJson(*found, options.fit));
   } else if (context.output == Output::kCsv) {
     PrintFitCsv(*found);
   } else {
@@ -144,7 +145,7 @@ int PrintAndWriteExpected(const Context& context, const FitCommandOptions& optio
   const fit::MotionBand band = fit::BandAt(person, expected.prediction, exhale);
   expected.regions = fit::BandByRegion(person, exhale, band);
   if (context.json()) {
-    std::cout << ExpectedJson(expected).dump(1) << "\n";
+    PrintJson(ExpectedJson(expected));
   } else if (context.output == Output::kCsv) {
     PrintExpectedCsv(expected);
   } else {

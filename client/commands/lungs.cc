@@ -11,6 +11,7 @@
 #include "client/commands/commands.h"
 #include "client/connection/errors.h"
 #include "client/files/whole_file.h"
+#include "client/print/output.h"
 #include "client/print/table.h"
 #include "client/terminal/progress.h"
 #include "server/imaging/gzip.h"
@@ -192,7 +193,7 @@ void PrintLungsJson(const std::vector<LungsOfBreath>& breaths) {
     }
     json.push_back({{"preset", breath.preset}, {"air_ml", 1e6 * breath.air}, {"lungs", lungs}});
   }
-  std::cout << json.dump(1) << "\n";
+  PrintJson(json);
 }
 
 int Lungs(const Context& context, const LungsOptions& options) {

@@ -165,7 +165,7 @@ void PrintCostJson(const RunOptions& options, const v1::GetSessionResponse& sess
       {"session", nlohmann::json::parse(Json(session.session()))},
   };
   if (thesis) json["thesis"] = {{"figure", thesis->what}, {"steps_per_second", thesis->steps_per_second}};
-  std::cout << json.dump(1) << "\n";
+  PrintJson(json);
 }
 
 // Returns the thesis' figure of a model like the scene's; nullopt if the thesis has none.
@@ -184,7 +184,7 @@ int PrintPlan(const Context& context, const RunOptions& options, const v1::GetSe
                                  {"file", options.motion.file},
                                  {"report", nlohmann::json::parse(Json(session.report()))},
                                  {"session", nlohmann::json::parse(Json(session.session()))}};
-    std::cout << json.dump(1) << "\n";
+    PrintJson(json);
     return kOk;
   }
   std::cout << absl::StrFormat("%s: %d vertices, %d springs, %d rigid links\nwould take %d steps of %.4g ms\n",

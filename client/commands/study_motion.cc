@@ -8,6 +8,7 @@
 #include "client/files/whole_file.h"
 #include "client/print/motion_fit.h"
 #include "client/print/motion_page.h"
+#include "client/print/output.h"
 #include "client/terminal/progress.h"
 #include "server/fit/motion_study.h"
 #include "server/service/calls/status.h"
@@ -40,7 +41,7 @@ int MotionStudyCommand(const Context& context, const MotionStudyOptions& options
   const auto study = RunMotionStudy(context, options);
   if (!study.ok()) return Fail(context, service::ToGrpc(study.status()));
   if (context.json()) {
-    std::cout << StudyJson(*study).dump(1) << "\n";
+    PrintJson(StudyJson(*study));
   } else if (context.output == Output::kCsv) {
     PrintMotionStudyCsv(*study);
   } else {

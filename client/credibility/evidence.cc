@@ -178,8 +178,8 @@ absl::StatusOr<std::vector<v1::ExactCaseRow>> ParseExactCases(const std::string&
       v1::ExactCaseRow& row = rows.emplace_back();
       if (suite.contains("name") && suite["name"].is_string()) row.set_suite(suite["name"].get<std::string>());
       row.set_case_(name->get<std::string>());
-      const bool skipped = test.contains("result") && test["result"] == "SKIPPED";
-      row.set_verdict(test.contains("failures") ? "FAILED" : (skipped ? "skipped" : "pass"));
+      const bool ran = test.contains("result") && test["result"] == "COMPLETED";  // GoogleTest's word
+      row.set_verdict(!ran ? "skipped" : (test.contains("failures") ? "FAILED" : "pass"));
     }
   }
   if (rows.empty()) return NotResults(file);

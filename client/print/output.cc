@@ -40,6 +40,10 @@ std::string Json(const Message& message) {
   return text;
 }
 
+void PrintJson(const nlohmann::json& json) {
+  std::cout << json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+}
+
 void PrintList(const Context& context, const Message& message, const Table& rows) {
   switch (context.output) {
     case Output::kTable:

@@ -2,19 +2,21 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <sstream>
+#include <optional>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "server/fit/csv_cells.h"
 #include "server/fit/slicer_points.h"
 #include "server/meshio/text.h"
+#include "server/schema/file_bytes.h"
 
 namespace phrenic::fit {
 namespace {
 
 using meshio::TextReader;
+
+constexpr std::size_t kMostLandmarkBytes = 64 << 20;  // some hundred thousand pairs
 
 // Where a CSV has the coordinates: exhale x, y, z, inhale x, y, z; -1: not there.
 using CsvColumns = std::array<int, 6>;
@@ -115,11 +117,11 @@ absl::StatusOr<Landmarks> ParseCsv(std::string_view name, std::string_view bytes
 }
 
 absl::StatusOr<Landmarks> ReadLandmarkFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream bytes;
-  bytes << file.rdbuf();
-  if (!file) return absl::NotFoundError(absl::StrCat("cannot read the landmarks ", path, ": check the path"));
-  return ParseLandmarks(path, bytes.str());
+  const std::optional<std::string> bytes = ReadBytes(path, kMostLandmarkBytes);
+  if (bytes.has_value()) return ParseLandmarks(path, *bytes);
+  return absl::NotFoundError(absl::StrCat("cannot read the landmarks ", path,
+                                          ": check the path, and that it has at most ", kMostLandmarkBytes >> 20,
+                                          " MiB"));
 }
 
 }  // namespace

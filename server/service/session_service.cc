@@ -36,8 +36,7 @@ absl::Status CheckRead(const v1::StepSessionRequest& request) {
   if (!request.read().empty() && !request.request_id().empty()) {
     return absl::InvalidArgumentError(
         "read: not with request_id, because answers with an id are kept for repeats; read the state by GetState, or "
-        "send "
-        "expected_tick in place of request_id");
+        "send expected_tick in place of request_id");
   }
   return stream::CheckParts(request.read());
 }

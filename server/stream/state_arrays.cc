@@ -1,8 +1,8 @@
 #include "server/stream/state_arrays.h"
 
-#include <string>
+#include <set>
 
-#include "absl/strings/str_cat.h"
+#include "absl/algorithm/container.h"
 #include "server/stream/codecs/wire.h"
 #include "server/stream/frame.h"
 
@@ -38,11 +38,8 @@ absl::Status WritePart(const Model& model, const Layout& layout, const State& st
       arrays.set_scalar_rates(DoublesOf(state.scalars.v));
       break;
     case v1::STATE_PART_BODIES:
-      arrays.clear_body_positions();
-      arrays.clear_poses();
       return AppendBodies(model, layout, state, *arrays.mutable_body_positions(), *arrays.mutable_poses());
     case v1::STATE_PART_LAYOUT:
-      arrays.clear_layout();
       WriteLayout(model, *arrays.mutable_layout());
       break;
     default:
@@ -54,14 +51,8 @@ absl::Status WritePart(const Model& model, const Layout& layout, const State& st
 }  // namespace
 
 absl::Status CheckParts(const StateParts& parts) {
-  for (const int part : parts) {
-    if (part != v1::STATE_PART_UNSPECIFIED && v1::StatePart_IsValid(part)) continue;
-    return absl::InvalidArgumentError(absl::StrCat(
-        "read: ", part,
-        " is no part of a state; the parts are STATE_PART_POSITIONS (1), "
-        "STATE_PART_VELOCITIES (2), STATE_PART_SCALARS (3), STATE_PART_BODIES (4), STATE_PART_LAYOUT (5)"));
-  }
-  return absl::OkStatus();
+  if (!absl::c_linear_search(parts, static_cast<int>(v1::STATE_PART_UNSPECIFIED))) return absl::OkStatus();
+  return absl::InvalidArgumentError("read: STATE_PART_UNSPECIFIED is not a part of a state");
 }
 
 absl::StatusOr<v1::StateArrays> MakeStateArrays(const Model& model, const Layout& layout, const State& state,
@@ -70,7 +61,7 @@ absl::StatusOr<v1::StateArrays> MakeStateArrays(const Model& model, const Layout
   arrays.set_tick(state.tick);
   arrays.set_time(state.time);
   arrays.set_phase(state.phase);
-  for (const int part : parts) {
+  for (const int part : std::set<int>(parts.begin(), parts.end())) {
     if (absl::Status status = WritePart(model, layout, state, part, arrays); !status.ok()) return status;
   }
   return arrays;

@@ -14,12 +14,12 @@ namespace phrenic::stream {
 // Values of v1::StatePart, in any order.
 using StateParts = google::protobuf::RepeatedField<int>;
 
-// Returns OK if each part is known. INVALID_ARGUMENT otherwise, naming the field `read` and its values.
+// INVALID_ARGUMENT, naming the field `read`, if a part is STATE_PART_UNSPECIFIED. Validation refuses unknown numbers.
 absl::Status CheckParts(const StateParts& parts);
 
-// Copies the parts of the state. Positions [m], velocities [m/s] and scalars are the state's own float64 numbers, bit
-// for bit; bodies are placed as frames place them, float32. INTERNAL if a number of a body is not finite as float32.
-// Requires: CheckParts(parts) is OK. Thread-safe.
+// Copies the parts of the state, each once however often it is named. Positions [m], velocities [m/s] and scalars are
+// the state's own float64 numbers, bit for bit; bodies are placed as frames place them, float32. INTERNAL if a number
+// of a body is not finite as float32. Requires: CheckParts(parts) is OK. Thread-safe.
 absl::StatusOr<v1::StateArrays> MakeStateArrays(const Model& model, const Layout& layout, const State& state,
                                                 const StateParts& parts);
 

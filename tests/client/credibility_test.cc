@@ -145,11 +145,13 @@ TEST(ExactCases, AreReadFromGoogleTest) {
   const auto cases = ParseExactCases("exact.json", R"({"testsuites": [{"name": "Beam", "testsuite": [
     {"name": "Sags", "result": "COMPLETED"},
     {"name": "Twists", "result": "COMPLETED", "failures": [{}]},
-    {"name": "Waits", "result": "SKIPPED"}]}]})");
+    {"name": "Waits", "result": "SKIPPED"},
+    {"name": "DISABLED_Sleeps", "result": "SUPPRESSED"},
+    {"name": "SaysNothing"}]}]})");
   ASSERT_TRUE(cases.ok()) << cases.status();
   EXPECT_EQ((*cases)[0].verdict(), "pass");
   EXPECT_EQ((*cases)[1].verdict(), "FAILED");
-  EXPECT_EQ((*cases)[2].verdict(), "skipped");
+  for (const size_t not_run : {2, 3, 4}) EXPECT_EQ((*cases)[not_run].verdict(), "skipped") << not_run;
   for (const char* bad : {"", "{", "[]", R"({"testsuites": 3})", R"({"testsuites": [{"testsuite": [{}]}]})",
                           R"({"testsuites": [3]})", R"({"testsuites": []})"}) {
     EXPECT_THAT(std::string(ParseExactCases("exact.json", bad).status().message()), HasSubstr("exact.json")) << bad;

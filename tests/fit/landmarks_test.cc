@@ -93,6 +93,7 @@ TEST(Landmarks, ArePairedOnlyInOneOrder) {
   EXPECT_THAT(std::string(PairLandmarks(two, swapped).status().message()), HasSubstr("point 1 is \"a\" at end exhale"));
   EXPECT_THAT(std::string(PairLandmarks(two, one).status().message()), HasSubstr("has 2 points, that of end inhale 1"));
   EXPECT_THAT(std::string(ReadLandmarks({"/no/such.csv"}).status().message()), HasSubstr("check the path"));
+  EXPECT_THAT(std::string(ReadLandmarks({"/dev/zero"}).status().message()), HasSubstr("at most 64 MiB"));
 }
 
 }  // namespace

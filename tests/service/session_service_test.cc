@@ -94,7 +94,7 @@ TEST_F(SessionServiceTest, AStepReturnsThePartsOfTheStateThatAreAskedFor) {
 TEST_F(SessionServiceTest, AnUnknownPartIsRefusedAndSoIsOneThatAnIdWouldKeep) {
   CreateCube("cube");
   ExpectError(Session(&Sessions::StepSession, "session_id: 'cube' ticks: 1 read: STATE_PART_UNSPECIFIED"),
-              grpc::INVALID_ARGUMENT, "read: 0 is no part of a state");
+              grpc::INVALID_ARGUMENT, "read: STATE_PART_UNSPECIFIED is not a part of a state");
   ExpectError(Session(&Sessions::StepSession, "session_id: 'cube' ticks: 1 request_id: 'a' read: STATE_PART_BODIES"),
               grpc::INVALID_ARGUMENT, "read: not with request_id");
   ExpectError(Session(&Sessions::GetState, "session_id: 'x'"), grpc::NOT_FOUND, "there is no session \"x\"");

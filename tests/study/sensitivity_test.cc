@@ -344,6 +344,36 @@ TEST(SensitivityStudy, NamesTheFieldOfABadRequest) {
   EXPECT_THAT(ErrorOf(request), HasSubstr("inputs: at least one is needed"));
 }
 
+// A name with bounds would be another name for the same parameter.
+TEST(SensitivityStudy, VariesAParameterOnce) {
+  v1::CreateStudyRequest request = SensitivityOfWeight();
+  *request.mutable_sensitivity()->mutable_inputs(1) = Uniform("elasticity:0:5", 1, 2);
+  EXPECT_THAT(ErrorOf(request), HasSubstr("inputs[1].parameter: is a name without bounds"));
+}
+
+// What a request names and how often decides what a study keeps in memory.
+TEST(UncertaintyStudy, IsBounded) {
+  v1::CreateStudyRequest request = UncertaintyOfWeight();
+  v1::UncertaintyStudy& study = *request.mutable_uncertainty();
+  study.set_samples(1 << 20);
+  EXPECT_THAT(ErrorOf(request), HasSubstr("samples: these are 1.049e+06 runs, more than 200000"));
+  study.set_samples(128);
+  *study.add_outputs() = study.outputs(0);
+  EXPECT_THAT(ErrorOf(request), HasSubstr("is named twice"));
+}
+
+TEST(ConvergenceStudy, IsBounded) {
+  v1::CreateStudyRequest request;
+  v1::ConvergenceStudy& study = *request.mutable_convergence();
+  for (int i = 0; i < 2; ++i) study.add_integrators(v1::INTEGRATOR_BDF2);
+  EXPECT_THAT(ErrorOf(request), HasSubstr("integrators: one is named twice"));
+  study.clear_integrators();
+  for (int i = 0; i < 17; ++i) study.add_resolutions_mm(3 + i);
+  EXPECT_THAT(ErrorOf(request), HasSubstr("resolutions_mm: at most 16"));
+  study.set_resolutions_mm(1, 3);
+  EXPECT_THAT(ErrorOf(request), HasSubstr("resolutions_mm: one is named twice"));
+}
+
 TEST(SensitivityStudy, NamesTheMeasuresThatThereAre) {
   v1::CreateStudyRequest request = SensitivityOfWeight();
   v1::SensitivityStudy& study = *request.mutable_sensitivity();
@@ -357,7 +387,7 @@ TEST(SensitivityStudy, NamesTheMeasuresThatThereAre) {
 TEST(SensitivityStudy, RefusesMoreRunsThanAreAllowed) {
   v1::CreateStudyRequest request = SensitivityOfWeight();
   request.mutable_sensitivity()->set_samples(1 << 20);
-  EXPECT_THAT(ErrorOf(request), HasSubstr("more than 1000000"));
+  EXPECT_THAT(ErrorOf(request), HasSubstr("more than 200000"));
   request = SensitivityOfWeight();
   request.mutable_sensitivity()->set_trajectories(0);
   request.mutable_sensitivity()->set_degree(0);

@@ -42,8 +42,8 @@ class CallLimits {
   // RESOURCE_EXHAUSTED.
   FairShare& unread() { return unread_; }
   FairShare& conversations() { return conversations_; }
-  // Large replies that their clients have not read. Large means more than 64 KiB (ServedCall::Reply). 256 replies, 64
-  // of one caller; none waits for a place.
+  // Large replies that their clients have not read. Large means more than 64 KiB (ServedCall::Reply); each has a place
+  // for every 4 MiB. 256 places, 64 of one caller; a reply does not wait for a place.
   FairShare& replies() { return replies_; }
   // A call holds its place while its handler runs.
   FairShare& lane(Lane lane) { return lanes_[static_cast<std::size_t>(lane)]; }

@@ -1,5 +1,6 @@
 #include "server/service/calls/served_call.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "server/service/calls/status.h"
@@ -10,7 +11,8 @@ namespace {
 constexpr absl::Duration kStall = absl::Minutes(1);              // for which a client may read nothing
 constexpr std::chrono::milliseconds kConversationPause(60'000);  // between two requests of a conversation
 
-constexpr std::size_t kLargeReply = 64 << 10;  // [bytes]
+constexpr std::size_t kLargeReply = 64 << 10;   // [bytes]
+constexpr std::size_t kBytesOfPlace = 4 << 20;  // of a large reply, for each of its places
 
 }  // namespace
 
@@ -58,10 +60,10 @@ bool ServedCall::Write(const grpc::ByteBuffer& message) {
 }
 
 void ServedCall::Reply(const grpc::ByteBuffer& message) {
-  if (message.Length() > kLargeReply) {
+  for (std::size_t bytes = message.Length(); bytes > kLargeReply; bytes -= std::min(bytes, kBytesOfPlace)) {
     auto place = limits().replies().Take(caller());
     if (!place.ok()) return FinishOnce(ToGrpc(place.status()));
-    reply_ = *std::move(place);
+    reply_.push_back(*std::move(place));
   }
   outgoing_ = message;
   FinishOnce(outgoing_, grpc::Status::OK);
@@ -93,7 +95,7 @@ void ServedCall::OnCancel() {
 }
 
 void ServedCall::OnDone() {
-  reply_ = nullptr;
+  reply_.clear();
   if (const auto stream = events(); stream != nullptr) stream->OnDone();
   IncomingCall::OnDone();
 }

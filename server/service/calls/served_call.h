@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
@@ -87,10 +88,10 @@ class ServedCall final : public IncomingCall {
   // Returns null before Continue.
   std::shared_ptr<StreamEvents> events() ABSL_LOCKS_EXCLUDED(mutex_);
 
-  const Method* const method_;  // null only in a call that ends in Begin
-  grpc::ByteBuffer outgoing_;   // of the write in progress; gRPC reads it
-  FairShare::Hold reply_;       // of a large reply, until OnDone
-  bool answered_ = false;       // a conversation had a request
+  const Method* const method_;          // null only in a call that ends in Begin
+  grpc::ByteBuffer outgoing_;           // of the write in progress; gRPC reads it
+  std::vector<FairShare::Hold> reply_;  // of a large reply, until OnDone
+  bool answered_ = false;               // a conversation had a request
 
   // Guards what the handler's thread shares with gRPC's. Not the mutex of IncomingCall.
   absl::Mutex mutex_;

@@ -1,6 +1,7 @@
 #include "server/study/uncertainty/convergence.h"
 
 #include <cmath>
+#include <set>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -11,10 +12,26 @@
 namespace phrenic::study {
 namespace {
 
+constexpr int kMostResolutions = 16;
+
 struct ConvergenceVariant {
   std::string varied, to;
   v1::Parameters parameters;
 };
+
+// INVALID_ARGUMENT if an integrator or a resolution is named twice, or for more than kMostResolutions.
+absl::Status CheckVariants(const v1::ConvergenceStudy& study) {
+  const std::set<int> integrators(study.integrators().begin(), study.integrators().end());
+  if (static_cast<int>(integrators.size()) < study.integrators_size()) {
+    return absl::InvalidArgumentError("integrators: one is named twice");
+  }
+  const std::set<double> resolutions(study.resolutions_mm().begin(), study.resolutions_mm().end());
+  if (static_cast<int>(resolutions.size()) < study.resolutions_mm_size()) {
+    return absl::InvalidArgumentError("resolutions_mm: one is named twice");
+  }
+  if (study.resolutions_mm_size() <= kMostResolutions) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("resolutions_mm: at most ", kMostResolutions));
+}
 
 std::vector<ConvergenceVariant> VariantsOf(const v1::ConvergenceStudy& study, const Subject& subject) {
   std::vector<ConvergenceVariant> variants = {{"as it is", "", subject.parameters}};
@@ -93,6 +110,7 @@ absl::Status AddResolution(const v1::CreateStudyRequest& request, double resolut
 absl::StatusOr<v1::ConvergenceTable> StudyConvergence(const v1::CreateStudyRequest& request, const Subject& subject,
                                                       const Compiler& compile, const Progress& progress) {
   const v1::ConvergenceStudy& study = request.convergence();
+  if (absl::Status status = CheckVariants(study); !status.ok()) return status;
   const auto outputs = Outputs::Make(*subject.model, study.outputs(), SecondsOf(study), false);
   if (!outputs.ok()) return outputs.status();
   const std::vector<ConvergenceVariant> variants = VariantsOf(study, subject);
@@ -112,7 +130,8 @@ absl::StatusOr<v1::ConvergenceTable> StudyConvergence(const v1::CreateStudyReque
   for (int i = 0; i < study.resolutions_mm_size(); ++i) {
     const Progress part = Part(progress, (of + i) / (of + meshes), (of + i + 1) / (of + meshes));
     absl::Status status = AddResolution(request, study.resolutions_mm(i), compile, runs->each.front(), part, table);
-    if (!status.ok()) return status;
+    if (absl::IsCancelled(status)) return status;
+    if (!status.ok()) CountConvergenceRun({{}, {}, std::string(status.message())}, table);
   }
   return table;
 }

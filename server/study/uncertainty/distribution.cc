@@ -114,7 +114,8 @@ absl::StatusOr<std::vector<Input>> MakeInputs(const google::protobuf::RepeatedPt
   for (int i = 0; i < inputs.size(); ++i) {
     const std::string path = absl::StrCat("inputs[", i, "]");
     const std::string& name = inputs[i].parameter();
-    const auto varied = calibrate::ReadVaried(name.substr(0, name.find(':')));
+    if (name.find(':') != std::string::npos) return WrongInput(path, "parameter", "is a name without bounds");
+    const auto varied = calibrate::ReadVaried(name);
     if (!varied.ok()) return WrongInput(path, "parameter", std::string(varied.status().message()));
     if (!names.insert(name).second) return WrongInput(path, "parameter", absl::StrCat(name, " is varied twice"));
     Input input{.varied = *varied, .kind = "", .source = inputs[i].source(), .inverse = nullptr, .first = 0, .last = 1};

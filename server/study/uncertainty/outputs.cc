@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -107,9 +108,13 @@ absl::StatusOr<std::unique_ptr<const Outputs>> Outputs::Make(
   if (!seconds) {
     if (auto breathing = physiology::Subject::Of(model); breathing.ok()) outputs->breathing_ = *std::move(breathing);
   }
+  std::set<std::pair<std::string, int>> seen;
   for (int i = 0; i < wanted.size(); ++i) {
-    absl::Status status = outputs->AddWanted(wanted[i], absl::StrCat("outputs[", i, "]"));
-    if (!status.ok()) return status;
+    const std::string path = absl::StrCat("outputs[", i, "]");
+    if (!seen.emplace(wanted[i].measure(), wanted[i].statistic()).second) {
+      return absl::InvalidArgumentError(absl::StrCat(path, ".measure: \"", wanted[i].measure(), "\" is named twice"));
+    }
+    if (absl::Status status = outputs->AddWanted(wanted[i], path); !status.ok()) return status;
   }
   if (wanted.empty()) {
     if (absl::Status status = outputs->AddDefaults(); !status.ok()) return status;

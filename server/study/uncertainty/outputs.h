@@ -47,6 +47,8 @@ class Outputs {
 
   const std::vector<Output>& outputs() const { return outputs_; }
   const Model& model() const { return model_; }
+  // Returns how many numbers a run gives: its outputs, and its curves.
+  size_t NumbersPerRun() const { return outputs_.size() + kPhases * model_.measures.size(); }
 
   // Requires: every field of `parameters` is set. CANCELLED if `cancelled`, called every few steps, returns true. A run
   // that diverges has a problem. Uses one thread.

@@ -69,6 +69,18 @@ size_t ThreadsFor(int wanted, size_t runs) {
 
 }  // namespace
 
+absl::Status CheckRuns(double runs, size_t numbers_per_run) {
+  if (runs > static_cast<double>(kMostRuns)) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("samples: these are %.4g runs, more than %d: lower them", runs, kMostRuns));
+  }
+  const double numbers = runs * static_cast<double>(numbers_per_run);
+  if (numbers <= kMostNumbers) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrFormat("samples: %.4g runs give %.4g numbers, more than %.4g: lower them, or name fewer outputs", runs,
+                      numbers, kMostNumbers));
+}
+
 std::vector<double> RunSet::ValuesOf(size_t output) const {
   std::vector<double> values;
   values.reserve(each.size());

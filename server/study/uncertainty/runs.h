@@ -12,7 +12,11 @@
 
 namespace phrenic::study {
 
-inline constexpr long kMostRuns = 1'000'000;  // of one study
+inline constexpr long kMostRuns = 200'000;          // of one study
+inline constexpr double kMostNumbers = 20'000'000;  // that the runs of one study give together, 8 bytes each
+
+// INVALID_ARGUMENT "samples: ..." if so many runs, or what they give, are more than a study may have.
+absl::Status CheckRuns(double runs, size_t numbers_per_run);
 
 // What several runs gave, in the order of their parameters.
 struct RunSet {

@@ -53,9 +53,7 @@ class Sensitivity {
           "degree: %d of %d inputs are %.4g coefficients, more than %.4g: lower it, or keep fewer inputs",
           study_.degree(), InputsKept(), CountTerms(InputsKept(), study_.degree()), kMostTerms));
     }
-    if (AllRuns() <= kMostRuns) return absl::OkStatus();
-    return absl::InvalidArgumentError(
-        absl::StrFormat("samples: these are %.4g runs, more than %d", AllRuns(), kMostRuns));
+    return CheckRuns(AllRuns(), outputs_.NumbersPerRun());
   }
 
   absl::StatusOr<RunSet> RunPoints(const UnitPoints& points, const std::string& doing) {

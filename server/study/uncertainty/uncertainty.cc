@@ -71,6 +71,7 @@ absl::StatusOr<v1::UncertaintyTable> StudyUncertainty(const v1::CreateStudyReque
       Outputs::Make(*subject.model, study.outputs(),
                     study.has_seconds() ? std::optional(study.seconds()) : std::nullopt, ChoosesStep(request, subject));
   if (!outputs.ok()) return outputs.status();
+  if (absl::Status size = CheckRuns(study.samples(), (*outputs)->NumbersPerRun()); !size.ok()) return size;
   const double nominal_part = 1.0 / (study.samples() + 1);
   const auto nominal = RunAll(**outputs, {&subject.parameters, 1}, 1, "nominal", Part(progress, 0, nominal_part));
   if (!nominal.ok()) return nominal.status();
