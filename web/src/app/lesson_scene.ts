@@ -5,7 +5,7 @@ import type { CutKind } from "../viewer/clipping";
 import type { ViewName } from "../viewer/named_views";
 import type { SceneTools } from "./scene_tools";
 
-/** Shows the scene as a step of a lesson wants it; what the step leaves open stays as it is. */
+/** Applies a step's view; unset fields change nothing. */
 export function showLessonView(
   { camera, cut, colouring, hiddenLayers }: LessonView,
   tools: SceneTools,

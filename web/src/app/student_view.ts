@@ -125,7 +125,7 @@ export class StudentView {
     if (this.lessonView !== undefined) showLessonView(this.lessonView, this.parts.tools, this.parts.layerStyles);
   }
 
-  /** Goes on in the lesson by a number of steps. */
+  /** Moves by a number of steps in the lesson. */
   moveInLesson(by: number): void {
     this.lessons.move(by);
   }

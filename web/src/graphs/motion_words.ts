@@ -1,6 +1,6 @@
 import type { BreathMotion } from "./breath_motion";
 
-/** Smaller changes of a dome [mm] and smaller breaths [l] are called none. */
+/** Smaller changes of a dome [mm] and smaller breaths [l] are reported as no motion. */
 const leastMillimetres = 1;
 const leastLitres = 0.02;
 

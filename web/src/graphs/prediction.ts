@@ -3,7 +3,7 @@ import { valueAt, type TimeSeries } from "../state/time_series";
 /** Number of points of a drawn curve. */
 const points = 41;
 
-/** A curve that somebody expects over a span of simulated time: a flat line at first, drawn over by hand. */
+/** A predicted curve over a span of simulated time: flat at first, changed by drawing. */
 export class Prediction {
   readonly values: number[];
 

@@ -4,7 +4,7 @@ import type { Values } from "../state/undo_history";
 /** Activations of the deepest breath, preset "deep" of the scene `thorax`. */
 export const fullActivations = { diaphragm: 0.6, intercostal: 1.62 };
 
-/** How somebody breathes, in the words of a class. */
+/** Breathing effort, as the student view shows it. */
 export interface Effort {
   /** Mean share of the deepest breath's activations, diaphragm and intercostal muscles, from 0. */
   depth: number;

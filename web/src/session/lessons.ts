@@ -7,7 +7,7 @@ export interface LessonPlace {
   step: number;
 }
 
-/** Returns the parsed JSON of a file of the page. Throws Error if there is none. */
+/** Returns the parsed JSON of a file of the page. Throws Error if the file does not exist. */
 export type FetchJson = (path: string) => Promise<JsonValue>;
 
 /** Fetches a file that is served beside the page. */

@@ -34,7 +34,7 @@ export class LessonCard {
     }
   }
 
-  /** Goes on by a number of steps; does nothing at the ends or without a lesson. */
+  /** Moves by a number of steps; does nothing at the ends or without a lesson. */
   move(by: number): void {
     const { value } = this.place;
     if (value === undefined || this.lesson === undefined) return;

@@ -16,7 +16,7 @@ export interface BreathSource {
 /** Shortest time between two sentences, so that a screen reader is not interrupted [simulated s]. */
 const interval = 4;
 
-/** The last breath in a sentence with its numbers, beside that of a second session if there is one. */
+/** The last breath in a sentence with its numbers, beside that of the second if a second session is shown. */
 export class MotionSentence {
   readonly element = make("p", { id: "motion-words" });
   private keys: MotionKeys | undefined;
@@ -28,12 +28,12 @@ export class MotionSentence {
     this.element.setAttribute("role", "status");
   }
 
-  /** Learns from a frame where the values are. */
+  /** Reads the places of the values from a frame. */
   receive(frame: Frame): void {
     this.keys ??= motionKeys(frame);
   }
 
-  /** Tells the last breath of the first session; waits for a whole breath after each change. */
+  /** Shows the last breath as a sentence; waits for a whole breath after each change. */
   show(here: BreathSource, beside: BreathSource | undefined): void {
     const now = here.history.times.at(-1) ?? 0;
     const [own, other] = [here, beside].map((each, i) => each && this.motionOf(each, this.changes[i]));
@@ -60,7 +60,7 @@ class ChangeDetector {
   private since = 0;
   private changed = false;
 
-  /** Returns the simulated time [s] of the last change; the first values are none. */
+  /** Returns the simulated time [s] of the last change; 0 if the parameters have not changed. */
   timeOfChange(values: string, now: number): number {
     if (this.seen !== undefined && this.seen !== values) {
       this.since = now;

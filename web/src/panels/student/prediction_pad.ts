@@ -21,7 +21,7 @@ const nudge = 0.00005;
 const recent = 8;
 
 /**
- * Predict, then play: draws the air in the lungs that somebody expects over the next breath, plays it, and shows both
+ * Predict, then play: records the user's predicted lung volume over the next breath, plays the breath, and shows both
  * curves and their mean distance.
  */
 export class PredictionPad {

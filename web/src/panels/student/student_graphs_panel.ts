@@ -28,7 +28,7 @@ export class StudentGraphsPanel {
     this.element.append(make("h2", { className: "unseen" }, "Graphs"), this.tiles, this.kinds);
   }
 
-  /** Learns from a frame which graphs there are. */
+  /** Reads the available graphs from a frame. */
   receive(frame: Frame): void {
     const specs = studentGraphs(frame);
     const key = JSON.stringify(specs);
