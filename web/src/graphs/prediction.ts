@@ -16,6 +16,13 @@ export class Prediction {
     this.values = Array<number>(points).fill(first);
   }
 
+  /** Returns the same curve over a span of another length [simulated s]. */
+  over(length: number): Prediction {
+    const stretched = new Prediction(this.start, length, this.values[0]);
+    this.values.forEach((value, i) => (stretched.values[i] = value));
+    return stretched;
+  }
+
   /** The end of the span [simulated s]. */
   get end(): number {
     return this.start + this.length;
