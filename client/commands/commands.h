@@ -91,8 +91,7 @@ CommandFunction SetUpStudyMotion(CLI::App& command);
 CommandFunction SetUpStudyList(CLI::App& command);
 CommandFunction SetUpStudyWatch(CLI::App& command);
 CommandFunction SetUpStudyDelete(CLI::App& command);
-// credibility.cc: the studies that a context of use asks for, in this process, and a report of them (credibility/).
-// With
+// credibility.cc: the studies that a context requires, in this process, and a report of them (credibility/). With
 // --check, kMissed if a required section is not met.
 CommandFunction SetUpCredibility(CLI::App& command);
 // campaign.cc: runs in processes of their own, on this machine or on Slurm (campaign/). `work` is what these processes

@@ -45,7 +45,7 @@ struct CredibilityOptions {
   bool check = false;
 };
 
-// Makes the evidence that a context asks for, or reads it from files.
+// Makes the evidence that a context requires, or reads it from files.
 class EvidenceMaker {
  public:
   EvidenceMaker(const Context& context, const CredibilityOptions& options, const v1::CredibilityContext& use,
@@ -63,7 +63,7 @@ class EvidenceMaker {
     }
   }
 
-  // Stops at the first error; status() then says why, as a call's.
+  // Stops at the first error; status() returns that error.
   absl::Status Make() {
     for (const auto& part : {&EvidenceMaker::Describe, &EvidenceMaker::ReadExact, &EvidenceMaker::RunCases,
                              &EvidenceMaker::RunOrders, &EvidenceMaker::RunConvergence, &EvidenceMaker::RunSensitivity,

@@ -57,7 +57,7 @@ int MotionStudyCommand(const Context& context, const MotionStudyOptions& options
 
 CommandFunction SetUpStudyMotion(CLI::App& command) {
   const auto options = std::make_shared<MotionStudyOptions>();
-  command.add_option("--cases", options->cases, "folder of landmark pairs, one file a person")->required();
+  command.add_option("--cases", options->cases, "folder of landmark pairs, one file per person")->required();
   command.add_option("--scene", options->scene.scene, "the scene with the lungs")->capture_default_str();
   AddResolution(command, options->scene.resolution_mm);
   command.add_option("--modes", options->fit.numbers, "numbers that a breath is made of")->capture_default_str();

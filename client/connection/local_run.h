@@ -23,7 +23,7 @@ struct RunCost {
   std::vector<std::string> warnings;  // of the session, the last of each constraint
 };
 
-// Returns the options of an in-process server. Compiling takes as long as it takes: whoever waits can interrupt it.
+// Returns the options of an in-process server. Compiling has no time limit; the user can interrupt it.
 service::ServerOptions LocalOptions(const std::string& data_dir);
 
 // Returns the first tick at which a session that starts at t = 0 has simulated `seconds` [s].

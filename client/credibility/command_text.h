@@ -1,4 +1,4 @@
-// The commands that make evidence again, as a person types them.
+// The shell commands that reproduce evidence.
 #ifndef PHRENIC_CLIENT_CREDIBILITY_COMMAND_TEXT_H_
 #define PHRENIC_CLIENT_CREDIBILITY_COMMAND_TEXT_H_
 

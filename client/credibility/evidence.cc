@@ -190,7 +190,7 @@ std::vector<v1::OrderRow> OrdersOf(const v1::ErrorTable& table) {
   std::vector<v1::OrderRow> orders;
   std::map<std::string, size_t> place;
   for (const v1::ErrorRow& row : table.rows()) {
-    if (OrderOf(row.integrator()) == 0) continue;  // it does not converge, and says so
+    if (OrderOf(row.integrator()) == 0) continue;  // skips integrators without a convergence order
     const auto [at, added] = place.emplace(row.integrator(), orders.size());
     if (added) {
       orders.emplace_back().set_integrator(row.integrator());
@@ -215,7 +215,7 @@ absl::StatusOr<double> NumberInJson(const std::string& file, const std::string& 
     const nlohmann::json& value = json.at(nlohmann::json::json_pointer(pointer));
     if (value.is_number() && std::isfinite(value.get<double>())) return value.get<double>();
   } catch (const nlohmann::json::exception&) {
-    // The pointer is malformed, or leads nowhere.
+    // The pointer is malformed, or names no value.
   }
   return absl::InvalidArgumentError(absl::StrCat(file, " has no number at ", pointer));
 }

@@ -12,7 +12,7 @@
 
 namespace phrenic::client {
 
-// What was run, or found in files. A part that is absent was neither.
+// What was run, or found in files. Absent parts were neither run nor found.
 struct Evidence {
   std::optional<v1::SensitivityTable> sensitivity;
   std::optional<v1::UncertaintyTable> uncertainty;

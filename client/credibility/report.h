@@ -19,7 +19,7 @@ std::vector<v1::CredibilitySection> RequiredAt(v1::RiskLevel risk);
 // Judges the evidence by the context's criteria. A section is met if each of its criteria holds and there is one,
 // partly met if some do, else not shown. Sections 1 to 3 and 13 to 15 have criteria of their own, which the report
 // lists beside the context's. A criterion whose number has not been made has no evidence and does not hold.
-// INVALID_ARGUMENT with the numbers that there are, if a criterion names one that no kind of evidence has.
+// INVALID_ARGUMENT with the known names, if a criterion names one that no kind of evidence has.
 absl::StatusOr<v1::CredibilityReport> MakeCredibilityReport(const v1::CredibilityContext& context,
                                                             const Evidence& evidence, const EvidenceCommands& commands);
 

@@ -79,7 +79,7 @@ void PrintFittedNumbers(const fit::MotionFit& fit) {
   table.Print(std::cout);
 }
 
-// Names the pair of numbers that the data tell apart least.
+// Names the pair of numbers with the largest correlation.
 void PrintStrongestCorrelation(const fit::MotionFit& fit) {
   Eigen::MatrixXd off = fit.correlation.cwiseAbs();
   off.diagonal().setZero();

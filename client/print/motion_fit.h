@@ -33,7 +33,7 @@ void PrintExpected(const Expected& expected);
 void PrintExpectedCsv(const Expected& expected);
 
 nlohmann::json StudyJson(const fit::MotionStudy& study);
-// One row a person, and their mean.
+// One row per person, and their mean.
 void PrintMotionStudy(const fit::MotionStudy& study);
 void PrintMotionStudyCsv(const fit::MotionStudy& study);
 

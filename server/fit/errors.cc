@@ -9,7 +9,7 @@
 namespace phrenic::fit {
 namespace {
 
-// Features of a model, one column each; a row a point.
+// Features of a model: one column per feature, one row per point.
 using Features = Eigen::MatrixXd;
 
 Features AffineFeatures(const Points& exhale) {

@@ -1,4 +1,4 @@
-// Distances between predicted and true motion of landmarks, and the plain models that a fit has to beat.
+// Distances between predicted and true motion of landmarks, and the reference models that a fit is compared with.
 #ifndef PHRENIC_SERVER_FIT_ERRORS_H_
 #define PHRENIC_SERVER_FIT_ERRORS_H_
 
@@ -37,7 +37,7 @@ struct RegionError {
 };
 
 // Returns the errors of the points `indices` by thirds of height and by halves, those with points. `places`:
-// Person::PlacesAt, one column a point; `left`: one entry a point.
+// Person::PlacesAt, one column per point; `left`: one entry per point.
 std::vector<RegionError> ErrorsByRegion(const Points& places, const std::vector<bool>& left, const Points& motion,
                                         const Points& difference, const std::vector<int>& indices);
 

@@ -10,7 +10,7 @@
 
 namespace phrenic::fit {
 
-// In metres, one column a landmark.
+// In metres, one column per landmark.
 struct Landmarks {
   Points exhale;
   Points motion;                         // inhale - exhale; as many columns as `exhale`, or none

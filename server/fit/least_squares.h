@@ -1,4 +1,4 @@
-// Linear least squares with a small ridge, and what the data cannot tell.
+// Linear least squares with a small ridge, with standard errors and correlations.
 #ifndef PHRENIC_SERVER_FIT_LEAST_SQUARES_H_
 #define PHRENIC_SERVER_FIT_LEAST_SQUARES_H_
 

@@ -11,7 +11,7 @@
 
 namespace phrenic::fit {
 
-// Per descent [1], one entry an amplitude of BreathAmplitudes.
+// Per descent [1], one entry per amplitude of BreathAmplitudes.
 struct PeopleMotion {
   Eigen::VectorXd mean, spread;  // spread: standard deviation between people
   int people = 0;
@@ -29,7 +29,7 @@ struct PersonMotion {
 // motion/descent with a ridge of 0.3 %. Requires: at least one person; equal numbers of amplitudes.
 PeopleMotion Summarise(const std::vector<const PersonMotion*>& people);
 
-// Returns the numbers that ship: of the five people of ../shared/data/motion, by `phrenic study motion --modes COUNT`
+// Returns the built-in numbers: of the five people of ../shared/data/motion, by `phrenic study motion --modes COUNT`
 // (the field "people" of its JSON). Requires: `count` is 8 or 12.
 const PeopleMotion& ShippedPeople(int count);
 

@@ -45,7 +45,7 @@ class Person {
   // True for the points of the left lung.
   std::vector<bool> LeftOnes(const Points& points) const;
 
-  // Returns the displacement of the points per amplitude: row 3 i + axis for point i, one column an amplitude [1].
+  // Returns the displacement of the points per amplitude: row 3 i + axis for point i, one column per amplitude [1].
   Eigen::MatrixXd Responses(const Points& points) const;
   // Returns the lungs' change of volume per amplitude [m^2], of both sides: the surface integral of n . u.
   Eigen::VectorXd VolumeResponses() const;

@@ -20,7 +20,7 @@ enum Side : int { kRight = 0, kLeft = 1 };
 struct LungSides {
   std::vector<Side> of;             // of each point
   double gap = 0;                   // x of the plane between the lungs [m]
-  std::vector<std::string> doubts;  // about axes that so few points do not tell; for people
+  std::vector<std::string> doubts;  // warnings about axes that the points do not determine
 };
 
 // Divides the points [m] of both lungs. INVALID_ARGUMENT says what cannot be right and what to check: fewer than

@@ -16,7 +16,7 @@ absl::StatusOr<Landmarks> ParseMarkups(std::string_view name, std::string_view b
 
 // Appends a point in mm. INVALID_ARGUMENT, without the place, if a coordinate is not finite or farther than kFarthest.
 absl::Status AppendPoint(const Eigen::Vector3d& mm, bool ras, std::vector<Eigen::Vector3d>& points);
-// Returns one column a point.
+// Returns one column per point.
 Points ColumnsOf(const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace phrenic::fit

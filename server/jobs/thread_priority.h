@@ -1,4 +1,4 @@
-// The priority of threads that work for nobody who waits for the next picture.
+// The priority of background threads.
 #ifndef PHRENIC_SERVER_JOBS_THREAD_PRIORITY_H_
 #define PHRENIC_SERVER_JOBS_THREAD_PRIORITY_H_
 

@@ -54,7 +54,7 @@ class SessionService final {
   // request_id: a repeat then gets the result.
   grpc::Status StepSession(grpc::CallbackServerContext* context, const v1::StepSessionRequest* request,
                            v1::StepSessionResponse* response);
-  // Waits for the step in progress, never for a whole StepSession.
+  // Waits at most for the current step.
   grpc::Status GetState(grpc::CallbackServerContext* context, const v1::GetStateRequest* request,
                         v1::GetStateResponse* response);
   // Discards updates that wait for a tick. A StepSession in progress ends with ABORTED.

@@ -18,9 +18,9 @@ namespace phrenic::session {
 // of these variables is set.
 std::string DefaultCacheFolder();
 
-// A folder of files, one a mesh, named by a hash of the part, its resolution, the program (its build ID) and the
+// A folder of files, one per mesh, named by a hash of the part, its resolution, the program (its build ID) and the
 // processor: other versions generate other bits, and so do the libraries' functions on another processor. Damaged files
-// are generated again. A folder that cannot be written to is no error; nothing is kept then. Thread-safe, also across
+// are generated again. A folder that cannot be written to disables the cache without an error. Thread-safe, also across
 // processes, as files are complete before they get their name.
 class MeshCache {
  public:

@@ -88,7 +88,7 @@ TEST_F(SessionServiceTest, AStepReturnsThePartsOfTheStateThatAreAskedFor) {
   EXPECT_EQ(state.state_hash(), stepped.state_hash());
   EXPECT_EQ(state.state().positions(), stepped.state().positions());
   ASSERT_TRUE(Call(*sessions_, &Sessions::StepSession, "session_id: 'cube' ticks: 1", &stepped).ok());
-  EXPECT_FALSE(stepped.has_state()) << "nobody asked for it";
+  EXPECT_FALSE(stepped.has_state()) << "`read` was empty";
 }
 
 TEST_F(SessionServiceTest, AnUnknownPartIsRefusedAndSoIsOneThatAnIdWouldKeep) {

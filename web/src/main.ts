@@ -8,7 +8,7 @@ import { elementById, make } from "./dom/elements";
 import { SessionChooser } from "./panels/session/session_chooser";
 import { signIn } from "./panels/session/sign_in";
 import { chooseSession } from "./session/choose_session";
-import { lessonPlaceOf, withLessonPlace } from "./session/lessons";
+import { lessonPlaceOf } from "./session/lessons";
 import { pageViewOf, withPageView } from "./session/page_view";
 import { recipeOf, rerun } from "./session/permalink";
 import { systemClock } from "./timing/clock";
@@ -65,7 +65,7 @@ loading.replaceChildren("Loading the scene…");
 const view = embedded ? "expert" : pageViewOf(here, localStorage);
 const shown = secondSessionId === undefined && !embedded ? address(sessionId) : here.search;
 const lesson = lessonPlaceOf(here);
-history.replaceState(null, "", withLessonPlace(withPageView(shown, view), lesson));
+history.replaceState(null, "", withPageView(shown, view));
 elementById("open-full").setAttribute("href", address(sessionId));
 try {
   const viewNow = () => (document.body.classList.contains("student") ? "student" : "expert");

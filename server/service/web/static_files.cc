@@ -80,7 +80,7 @@ void Compress(std::string_view accept_encoding, StaticFile& file) {
   for (const auto& [coding, ending] : {std::pair("br", ".br"), {"gzip", ".gz"}}) {
     std::error_code error;
     const fs::path path = absl::StrCat(plain.string(), ending);
-    // One that is older is left over from another build.
+    // Skips a compressed file older than its source.
     if (!fs::is_regular_file(path, error) || fs::last_write_time(path, error) < fs::last_write_time(plain, error))
       continue;
     file.varies = true;

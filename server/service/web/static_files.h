@@ -24,7 +24,7 @@ struct StaticFile {
 // percent-encoding is decoded once. Looks at the disk at each call, so that a viewer built meanwhile is served; keeps
 // nothing open. If `root` does not exist, NOT_FOUND says how to build it. Where the build wrote a compressed file
 // beside it (FILE.br, FILE.gz; web/vite.config.ts), the smallest that `accept_encoding` allows is returned, with the
-// media type of FILE. `accept_encoding` is the request's header (RFC 9110 section 12.5.3); "*" is not looked at.
+// media type of FILE. `accept_encoding` is the request's header (RFC 9110 section 12.5.3); "*" is ignored.
 // Errors: NOT_FOUND if there is no such file or if it is outside `root`, by ".." or a symbolic link; INVALID_ARGUMENT
 // if the target is malformed.
 absl::StatusOr<StaticFile> FindStaticFile(const std::string& root, std::string_view target,

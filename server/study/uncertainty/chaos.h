@@ -21,7 +21,7 @@ struct ChaosFit {
   // 1 - mean square of the errors at points that were left out of the fit, one at a time, over the variance. 0 or less:
   // the polynomials predict nothing.
   double predicted_share = 0;
-  std::vector<SobolIndex> indices;  // one an input; empty if f does not vary
+  std::vector<SobolIndex> indices;  // one per input; empty if f does not vary
 };
 
 // Fits the values at `points`; those that are not finite are left out. `indices` is empty, and `terms` 0, if less than

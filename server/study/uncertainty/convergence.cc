@@ -47,7 +47,7 @@ std::vector<ConvergenceVariant> VariantsOf(const v1::ConvergenceStudy& study, co
   return variants;
 }
 
-// Adds a row an output. `base` has the values of the scene as it is.
+// Adds one row per output. `base` has the values of the scene as it is.
 void AddConvergenceRows(const ConvergenceVariant& variant, const Outputs& outputs, const RunOutputs& run,
                         const RunOutputs& base, v1::ConvergenceTable& table) {
   for (size_t k = 0; k < outputs.outputs().size(); ++k) {

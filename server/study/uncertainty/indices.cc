@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kBootstraps = 200;
 
-// Base points all of whose runs succeeded; one a row: f(A), f(B), f(A_B^1), ...
+// Base points all of whose runs succeeded; one per row: f(A), f(B), f(A_B^1), ...
 UnitPoints CompleteBlocks(std::span<const double> values, Eigen::Index width) {
   const Eigen::Map<const UnitPoints> all(values.data(), static_cast<Eigen::Index>(values.size()) / width, width);
   UnitPoints kept(all.rows(), width);

@@ -18,7 +18,7 @@ struct Effects {
   double deviation = 0;  // sample standard deviation of d; 0 of a single one
   int count = 0;         // 0: none could be computed
 };
-// Returns one an input. Requires: `values` at the rows of `points` = MorrisPoints(...).
+// Returns one per input. Requires: `values` at the rows of `points` = MorrisPoints(...).
 std::vector<Effects> ElementaryEffects(const UnitPoints& points, std::span<const double> values);
 
 struct Interval {
@@ -29,7 +29,7 @@ struct SobolIndex {
   double first = 0, total = 0;
   std::optional<Interval> first_within, total_within;  // of 95 % of the bootstraps; none by chaos
 };
-// Returns one an input: first by Saltelli's estimator, sum f(B) (f(A_B^i) - f(A))/(N V), total by Jansen's,
+// Returns one per input: first by Saltelli's estimator, sum f(B) (f(A_B^i) - f(A))/(N V), total by Jansen's,
 // sum (f(A) - f(A_B^i))^2/(2 N V), with V the variance of f(A) and f(B). Empty if f does not vary, or if less than two
 // base points are left. Requires: `values` at the rows of SaltelliPoints(values.size()/(inputs + 2), inputs, ...).
 // Bootstraps draw base points by `seed`.

@@ -25,9 +25,9 @@ struct Output {
 
 // What a run gave.
 struct RunOutputs {
-  std::vector<double> values;  // one an output, in its unit; NaN if the run failed or has no such value
+  std::vector<double> values;  // one per output, in its unit; NaN if the run failed or has no such value
   std::vector<std::vector<double>>
-      curves;           // one a measure of the model [its unit]: at each of kPhases; empty if it failed
+      curves;           // one per measure of the model [its unit]: at each of kPhases; empty if it failed
   std::string problem;  // why the run failed; empty if it did not
 };
 inline constexpr int kPhases = 41;  // equidistant moments of the measured time, both ends included
@@ -36,11 +36,11 @@ inline constexpr int kPhases = 41;  // equidistant moments of the measured time,
 class Outputs {
  public:
   // Without `seconds`, a run is a breath of the parameters: of a scene with a diaphragm as physiology::Record settles
-  // it, of another from rest. With `seconds` [s], it is that time from rest. No outputs wanted: the measures of a
-  // breath that the scene has, or, where there are none, the amplitudes of its measures. `automatic_step`: the step of
-  // each run is shortened to the stability limit of its parameters. INVALID_ARGUMENT with "outputs[0].measure" and the
-  // names that there are for an unknown one, for a statistic that is missing or does not belong there;
-  // FAILED_PRECONDITION if the scene has nothing to measure.
+  // it, of another from rest. With `seconds` [s], it is that time from rest. Empty outputs: the scene's breath
+  // measures; without any, the amplitudes of its measures. `automatic_step`: the step of each run is shortened to the
+  // stability limit of its parameters. INVALID_ARGUMENT with "outputs[0].measure" and the known names for an unknown
+  // one, for a statistic that is missing or does not belong there; FAILED_PRECONDITION if the scene has nothing to
+  // measure.
   static absl::StatusOr<std::unique_ptr<const Outputs>> Make(
       const Model& model, const google::protobuf::RepeatedPtrField<v1::StudiedOutput>& wanted,
       std::optional<double> seconds, bool automatic_step);

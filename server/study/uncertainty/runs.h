@@ -21,13 +21,13 @@ absl::Status CheckRuns(double runs, size_t numbers_per_run);
 // What several runs gave, in the order of their parameters.
 struct RunSet {
   std::vector<RunOutputs> each;
-  // Returns the values of one output, one a run.
+  // Returns the values of one output, one per run.
   std::vector<double> ValuesOf(size_t output) const;
   long CountFailed() const;
   std::string FirstProblem() const;  // empty if none failed
 };
 
-// Runs the scene with each of the parameters, every field set, on `threads` threads; 0: one a core. The number of
+// Runs the scene with each of the parameters, every field set, on `threads` threads; 0: one per core. The number of
 // threads changes no bit of the result. `progress` is called on the caller's thread, with `doing` and the number of
 // runs. CANCELLED if it returns false, within a few steps of every run.
 absl::StatusOr<RunSet> RunAll(const Outputs& outputs, std::span<const v1::Parameters> parameters, int threads,

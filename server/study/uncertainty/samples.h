@@ -8,7 +8,7 @@
 
 namespace phrenic::study {
 
-// One point a row, inputs x points within 0 to 1; a row is contiguous.
+// One point per row, inputs x points within 0 to 1; a row is contiguous.
 using UnitPoints = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // Returns the first points of Sobol's sequence (Joe and Kuo's directions), shifted digitally by random bits of `seed`:

@@ -122,7 +122,7 @@ TEST(LungTissue, HardlyChangesWithSmallerBricks) {
   EXPECT_LT(largest, 0.06 * 0.01);
 }
 
-// What carries the motion of real lungs: ../shared/motion.md.
+// The properties that determine the motion of real lungs: ../shared/motion.md.
 TEST(LungTissue, MovesFartherWhereItSlidesThanGlued) {
   const LungTissue sliding = Tissue(LungShape(), {.edge = 0.02});
   const LungTissue glued = Tissue(LungShape(), {.edge = 0.02, .tangential = 500});

@@ -3,6 +3,7 @@ import { shortcuts } from "../../../web/src/app/shortcuts";
 import { make } from "../../../web/src/dom/elements";
 
 let heard: string[];
+let inLesson = false;
 const press = (target: Element, key: string, more: KeyboardEventInit = {}) =>
   target.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, ...more }));
 
@@ -11,6 +12,7 @@ beforeEach(() => {
   const keys = [
     { key: " ", description: "Play, pause", run: () => heard.push("play") },
     { key: "g", description: "Graphs", run: () => heard.push("graphs") },
+    { key: "PageDown", description: "Next step", when: () => inLesson, run: () => heard.push("next") },
   ];
   const dialog = shortcuts(
     keys,
@@ -31,6 +33,18 @@ test("KeysWorkUnlessAnInputHasFocus", () => {
   press(page, "g", { ctrlKey: true });
   expect(new Set(heard)).toEqual(new Set(["play", "graphs", "undo", "redo"]));
   expect(heard.filter((each) => each === "graphs")).toHaveLength(1);
+});
+
+test("AKeyWithoutAnActionNowIsLeftToTheBrowser", () => {
+  const pageDown = () => new KeyboardEvent("keydown", { key: "PageDown", bubbles: true, cancelable: true });
+  const [scrolls, turns] = [pageDown(), pageDown()];
+  document.querySelector("main")!.dispatchEvent(scrolls);
+  expect([scrolls.defaultPrevented, heard]).toEqual([false, []]);
+  inLesson = true;
+  document.querySelector("main")!.dispatchEvent(turns);
+  inLesson = false;
+  expect(turns.defaultPrevented).toBe(true);
+  expect(new Set(heard)).toEqual(new Set(["next"]));
 });
 
 test("TheDialogListsEveryKey", () => {

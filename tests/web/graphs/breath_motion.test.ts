@@ -46,11 +46,16 @@ test("AHealthyBreathIsNotParadoxical", () => {
 });
 
 test("AComparisonNamesBothVolumes", () => {
-  const words = motionWords(motion(0.39, 0.2, -16), motion(0.5, -13, -7));
+  const words = motionWords(motion(0.39, 0.2, -16), { label: "second view", motion: motion(0.5, -13, -7) });
   expect(words).toBe(
     "The right dome hardly moves while the left falls by 16 mm. A breath brings 0.39 l of air instead of 0.50. " +
-      "Healthy: both domes fall, the right by 13 mm and the left by 7.",
+      "Second view: both domes fall, the right by 13 mm and the left by 7.",
   );
+});
+
+test("AnotherBreathWithoutAirIsNotNamed", () => {
+  const other = { label: "Quiet, supine", motion: motion(0.001, -3, -2) };
+  expect(motionWords(motion(0.39, 0.2, -16), other)).not.toContain("Quiet");
 });
 
 test("WithoutAirNothingIsSaidOfTheDomes", () => {

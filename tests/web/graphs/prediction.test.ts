@@ -27,6 +27,14 @@ test("TheKnownFirstValueIsNotDrawnOver", () => {
   expect(drawn.values.slice(0, 3)).toEqual([2.5, 9, 9]);
 });
 
+test("ACurveIsStretchedOverALongerBreath", () => {
+  const drawn = new Prediction(10, 4, 2.5);
+  drawn.line({ point: 0, value: 2.5 }, { point: 40, value: 3.5 });
+  const longer = drawn.over(8);
+  expect([longer.start, longer.end, longer.values]).toEqual([10, 18, drawn.values]);
+  expect(longer.distance(breath((time) => 2.5 + (time - 10) / 8), "v")).toBeCloseTo(0, 9); // prettier-ignore
+});
+
 test("PartsOutsideTheSpanAreItsEnds", () => {
   const { values, timeOf } = new Prediction(10, 4, 2.5);
   const prediction = new Prediction(10, 4, 2.5);

@@ -1,9 +1,11 @@
 import { readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
-import { fromJsonString } from "@bufbuild/protobuf";
+import { create, fromJsonString } from "@bufbuild/protobuf";
 import { describe, expect, test } from "vitest";
-import { LessonSchema, type LessonStep } from "../../../web/src/gen/phrenic/v1/lesson_pb";
-import { presetOf } from "../../../web/src/session/lessons";
+import { sceneNames } from "../../../web/src/app/lesson_scene";
+import { type Claim, ClaimSchema, LessonSchema } from "../../../web/src/gen/phrenic/v1/lesson_pb";
+import { cmH2O } from "../../../web/src/graphs/units";
+import { checkLesson, presetOf } from "../../../web/src/session/lessons";
 
 const web = join(import.meta.dirname, "../../../web");
 const folder = join(web, "public/lessons");
@@ -11,21 +13,45 @@ const names = JSON.parse(readFileSync(join(folder, "index.json"), "utf8")) as st
 const scene = readFileSync(join(web, "../server/scenes/thorax.textproto"), "utf8");
 const read = (name: string) => fromJsonString(LessonSchema, readFileSync(join(folder, `${name}.json`), "utf8"));
 
-const units: Record<string, number> = { mm: 1e-3, l: 1e-3, "cmH₂O": 98.0665 };
+const layers = [...new Set([...scene.matchAll(/\blayer: "(.*?)"/g)].map(([, layer]) => layer))];
 
-/** Returns the numbers with a unit in a caption, in SI units. */
-function numbersIn(caption: string): number[] {
-  const found = caption.matchAll(/([−]?\d+(?:\.\d+)?) (mm|l|cmH₂O)(?![a-z])/g);
-  return [...found].map(([, digits, unit]) => Number(digits.replace("−", "-")) * units[unit]);
+/** SI unit and value of each unit of a caption. */
+const units: Record<string, [si: string, factor: number]> = {
+  mm: ["m", 1e-3],
+  l: ["m^3", 1e-3],
+  "cmH₂O": ["Pa", cmH2O],
+};
+
+/** A number with its SI unit. */
+interface Quantity {
+  unit: string;
+  value: number;
 }
 
-/** True if the limits of a claim of the step contain the number, whichever way it is counted. */
-function isClaimed({ claims }: LessonStep, number: number): boolean {
-  const within = (value: number) =>
+const quantity = (value: number, name: string): Quantity => ({ unit: units[name][0], value: value * units[name][1] });
+
+/** Returns the numbers with a unit in a caption. */
+function numbersIn(caption: string): Quantity[] {
+  const found = caption.matchAll(/([−]?\d+(?:\.\d+)?) (mm|l|cmH₂O)(?![a-z])/g);
+  return [...found].map(([, digits, unit]) => quantity(Number(digits.replace("−", "-")), unit));
+}
+
+/** Returns the SI unit of a measure of the scene, by what it reads. */
+function unitOf(measure: string): string {
+  const line = scene.split("\n").find((each) => each.startsWith(`measures { name: "${measure}"`)) ?? "";
+  if (line.includes("highest {")) return "m";
+  const output = /output: "(.*?)"/.exec(line)?.[1] ?? "";
+  if (output.includes("pressure")) return "Pa";
+  return output.includes("volume") ? "m^3" : "1";
+}
+
+/** True if the limits of a claim of the same unit contain the number, whichever way it is counted. */
+function isClaimed(claims: Claim[], { unit, value }: Quantity): boolean {
+  const within = (number: number) =>
     claims.some(
-      ({ minimum, maximum }) => minimum !== undefined && maximum !== undefined && value >= minimum && value <= maximum,
+      ({ measure, minimum = NaN, maximum = NaN }) => unitOf(measure) === unit && number >= minimum && number <= maximum,
     );
-  return within(number) || within(-number);
+  return within(value) || within(-value);
 }
 
 test("TheIndexNamesEveryLesson", () => {
@@ -34,7 +60,17 @@ test("TheIndexNamesEveryLesson", () => {
 });
 
 test("ANumberOfACaptionIsRead", () => {
-  expect(numbersIn("falls by 14 mm, brings 0.5 l at −3 cmH₂O, three times")).toEqual([0.014, 0.0005, -294.1995]);
+  expect(numbersIn("falls by 14 mm, brings 0.5 l at −3 cmH₂O, three times")).toEqual([
+    { unit: "m", value: 0.014 },
+    { unit: "m^3", value: 0.0005 },
+    { unit: "Pa", value: -294.1995 },
+  ]);
+});
+
+test("AClaimOfAnotherUnitIsNone", () => {
+  const claims = [create(ClaimSchema, { measure: "lung volume", minimum: 0.0024, maximum: 0.0026 })];
+  expect(isClaimed(claims, quantity(2.5, "l"))).toBe(true);
+  expect(isClaimed(claims, quantity(2.5, "mm"))).toBe(false);
 });
 
 describe.each(names)("the lesson %s", (name) => {
@@ -42,8 +78,10 @@ describe.each(names)("the lesson %s", (name) => {
 
   test("ClaimsEveryNumberOfItsCaptions", () => {
     const unclaimed = steps.flatMap((step) =>
-      numbersIn(step.caption).filter((number) => !isClaimed(step, number)).map((number) => `${step.title}: ${number}`),
-    ); // prettier-ignore
+      numbersIn(step.caption)
+        .filter((number) => !isClaimed(step.claims, number))
+        .map(({ unit, value }) => `${step.title}: ${value} ${unit}`),
+    );
     expect(unclaimed).toEqual([]);
   });
 
@@ -54,6 +92,20 @@ describe.each(names)("the lesson %s", (name) => {
       expect(scene).toContain(`name: "${presetOf(lesson, step)}"`);
       for (const { measure } of step.claims) expect(scene).toContain(`measures { name: "${measure}"`);
     }
+  });
+
+  test("ClaimsTheNumberThatAnswersAQuestionInItsStepOrTheNext", () => {
+    const unclaimed = steps.flatMap(({ question, title, claims }, i) => {
+      const { number } = question ?? {};
+      if (number === undefined) return [];
+      const known = [...claims, ...(steps[i + 1]?.claims ?? [])];
+      return isClaimed(known, quantity(number.value, number.unit)) ? [] : [`${title}: ${number.value} ${number.unit}`];
+    });
+    expect(unclaimed).toEqual([]);
+  });
+
+  test("HasTheSceneAndTheNamesOfTheThorax", () => {
+    expect(() => checkLesson(read(name), sceneNames("thorax", layers))).not.toThrow();
   });
 
   test("HasARightAnswerToEveryQuestion", () => {

@@ -5,7 +5,7 @@ import { expect, test } from "vitest";
 import { ParametersSchema } from "../../../web/src/gen/phrenic/v1/parameters_pb";
 import { PresetSchema } from "../../../web/src/gen/phrenic/v1/scene_pb";
 import { presetCauses } from "../../../web/src/parameters/causes";
-import { activationsOf, effortOf, fullActivations } from "../../../web/src/parameters/effort";
+import { activationsOf, breathLengthOf, effortOf, fullActivations } from "../../../web/src/parameters/effort";
 
 const scene = readFileSync(join(import.meta.dirname, "../../../server/scenes/thorax.textproto"), "utf8");
 
@@ -34,6 +34,16 @@ test("EveryGroupOfTheThoraxHasACauseInPlainWords", () => {
   const causes = presetCauses(presets);
   expect([...causes.keys()]).toEqual(["Healthy", "Ill", "Machine"]);
   expect([...causes.values()].flat().length).toBe(groups.length);
+});
+
+test("GroupsThatTheSceneMixesStandTogether", () => {
+  const groups = ["Manoeuvres", "Breathing patterns", "Manoeuvres", "Breathing patterns"];
+  const presets = groups.map((group, i) => create(PresetSchema, { name: String(i), group }));
+  expect(presetCauses(presets).get("Healthy")!.map(({ name }) => name)).toEqual(["1", "3", "0", "2"]); // prettier-ignore
+});
+
+test("ABreathWithoutALengthTakesFourSeconds", () => {
+  expect([undefined, { breathLength: 5 }].map(breathLengthOf)).toEqual([4, 5]);
 });
 
 test("AnUnknownGroupIsACauseOfItsOwn", () => {

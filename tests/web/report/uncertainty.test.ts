@@ -130,6 +130,7 @@ describe("the page of credibility", () => {
     expect(all("table.summary tbody tr").length).toBe(15);
     for (const link of all("table.summary a")) expect(page.querySelector(link.getAttribute("href")!)).not.toBeNull();
     expect(all("h2 .badge").length).toBe(15);
+    expect(all("h2").map(({ textContent }) => textContent)).toContain("15 sections");
     expect(page.textContent).toContain("build/exact_test");
   });
 

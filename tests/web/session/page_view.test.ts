@@ -25,9 +25,15 @@ test("AClassLinkAndALessonOpenTheStudentView", () => {
   expect(pageViewOf(page("?session=a&lesson=copd"), memory())).toBe("student");
 });
 
-test("TheViewIsNamedOnlyIfItIsTheStudents", () => {
+test("TheViewIsAlwaysNamed", () => {
   expect(withPageView("?session=a", "student")).toBe("?session=a&view=student");
-  expect(withPageView("?session=a&view=student", "expert")).toBe("?session=a");
+  expect(withPageView("?session=a&view=student", "expert")).toBe("?session=a&view=expert");
+});
+
+test("TheExpertViewOfAnAddressOutlastsTheMemoryOfTheStudentView", () => {
+  const storage = memory();
+  rememberPageView("student", storage);
+  expect(pageViewOf(page(withPageView("?session=a&lesson=copd", "expert")), storage)).toBe("expert");
 });
 
 test("ALessonAndItsStepAreInTheAddress", () => {

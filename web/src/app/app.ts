@@ -263,6 +263,7 @@ export class App {
     const share = new ShareDialog({ controller, report, open, photograph: () => void photograph() });
     const { graphs, panel } = drawers(() => this.resize(), this.secondView !== undefined);
     const press = (id: string) => () => document.getElementById(id)?.click();
+    const when = () => this.student.inLesson;
     const keys = shortcuts(
       [
         { key: " ", description: "Play, pause", run: press("play") },
@@ -273,8 +274,8 @@ export class App {
         { key: "c", description: "Controls", run: panel },
         { key: "b", description: "Compare with healthy", run: press("compare-healthy") },
         { key: "e", description: "Student or expert view", run: () => this.student.toggle() },
-        { key: "PageDown", description: "Next step of the lesson", run: () => this.student.moveInLesson(1) },
-        { key: "PageUp", description: "Step before", run: () => this.student.moveInLesson(-1) },
+        { key: "PageDown", description: "Next step of the lesson", when, run: () => this.student.moveInLesson(1) },
+        { key: "PageUp", description: "Step before", when, run: () => this.student.moveInLesson(-1) },
         { key: "h", description: "Whole scene", run: () => viewer.goTo("home") },
         { key: "f", description: "Front view", run: () => viewer.goTo("front") },
         { key: "p", description: "Save a screenshot", run: () => void photograph() },

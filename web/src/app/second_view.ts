@@ -89,7 +89,7 @@ export class SecondView {
   /** Ends the comparison: deletes the second session if it is a temporary copy. */
   async end(): Promise<void> {
     if (this.session.value?.temporary !== true) return;
-    // The server deletes a copy that nobody watches by itself, should this call fail.
+    // If this call fails, the server deletes the temporary copy once it has no viewers.
     await this.api.sessions.deleteSession({ sessionId: this.sessionId }).catch(() => undefined);
   }
 

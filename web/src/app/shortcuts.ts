@@ -4,6 +4,8 @@ import { make } from "../dom/elements";
 export interface Shortcut {
   key: string;
   description: string;
+  /** True if the key has its action now; otherwise the browser handles it. Not set: always. */
+  when?(): boolean;
   run(): void;
 }
 
@@ -36,7 +38,7 @@ export function shortcuts(all: Shortcut[], undo: () => void, redo: () => void): 
     if (event.ctrlKey || event.metaKey) return onUndoKey(event, undo, redo);
     // A focused button is pressed by the space bar.
     if (event.key === " " && (event.target as Element | null)?.closest("button, summary, a")) return;
-    const shortcut = keys.find(({ key }) => key === event.key);
+    const shortcut = keys.find(({ key, when }) => key === event.key && (when?.() ?? true));
     if (shortcut === undefined) return;
     event.preventDefault();
     shortcut.run();

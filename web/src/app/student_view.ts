@@ -14,19 +14,20 @@ import { MotionSentence } from "../panels/student/motion_sentence";
 import { PredictionPad } from "../panels/student/prediction_pad";
 import { sliders } from "../panels/student/sliders";
 import { StudentGraphsPanel } from "../panels/student/student_graphs_panel";
-import { fetchJson, type LessonPlace, presetOf, withLessonPlace } from "../session/lessons";
+import { activeLabel } from "../parameters/presets";
+import { fetchJson, type LessonPlace, presetOf, type SceneNames, withLessonPlace } from "../session/lessons";
 import { type PageView, rememberPageView, withPageView } from "../session/page_view";
 import type { Participation } from "../session/participation";
 import type { SessionController } from "../session/session_controller";
 import { Signal } from "../state/signal";
 import { TimeSeries } from "../state/time_series";
-import { showLessonView } from "./lesson_scene";
+import { showLessonView, whenShown } from "./lesson_scene";
 import type { SceneTools } from "./scene_tools";
 import type { SecondView } from "./second_view";
 
 /** Duration that is kept [simulated s]. */
 const kept = 60;
-/** End of the colour scale of a comparison [mm]: the domes of a quiet breath move by 10 to 20. */
+/** End of the colour scale of a comparison [mm]: the domes of a quiet breath move by 7 to 13. */
 const displacementTop = 20;
 
 /** What the student view acts on. */
@@ -56,6 +57,8 @@ export class StudentView {
   private readonly sentence = new MotionSentence();
   private readonly lessons: LessonCard;
   private readonly prediction: PredictionPad;
+  /** What the lessons of this session may name, once the scene is shown. */
+  private readonly names: Promise<SceneNames>;
   /** The view of the lesson's step, once there is a scene to show. */
   private lessonView: LessonView | undefined;
 
@@ -64,10 +67,15 @@ export class StudentView {
     first: PageView,
   ) {
     const { controller, participation, presets, secondView } = parts;
-    this.lessons = new LessonCard({ fetchFile: fetchJson, play: (lesson, step) => this.playStep(lesson, step) });
+    this.names = whenShown(controller.session, parts.layerStyles);
+    this.lessons = new LessonCard({
+      fetchFile: fetchJson,
+      names: () => this.names,
+      play: (lesson, step) => this.playStep(lesson, step),
+    });
     const open = (query: string) => parts.open(withLessonPlace(query, this.lessons.place.value));
     this.view = new Signal(first);
-    const beside = secondView === undefined ? undefined : this.besideHistory;
+    const beside = secondView && { history: this.besideHistory, label: () => this.besideLabel };
     this.graphs = new StudentGraphsPanel(this.history, beside, () => controller.sessionId);
     const close =
       secondView &&
@@ -125,7 +133,12 @@ export class StudentView {
     if (this.lessonView !== undefined) showLessonView(this.lessonView, this.parts.tools, this.parts.layerStyles);
   }
 
-  /** Goes on in the lesson by a number of steps. */
+  /** True if the student view shows a lesson. */
+  get inLesson(): boolean {
+    return this.view.value === "student" && this.lessons.place.value !== undefined;
+  }
+
+  /** Moves by a number of steps in the lesson. */
   moveInLesson(by: number): void {
     this.lessons.move(by);
   }
@@ -137,11 +150,20 @@ export class StudentView {
     this.prediction.draw();
     const source = (history: TimeSeries, parameters: () => Parameters | undefined) => ({ history, parameters });
     const { controller, secondView } = this.parts;
-    const beside = secondView && source(this.besideHistory, () => secondView.session.value?.parameters);
+    const beside = secondView && {
+      ...source(this.besideHistory, () => secondView.session.value?.parameters),
+      label: this.besideLabel,
+    };
     this.sentence.show(
       source(this.history, () => controller.session.value?.parameters),
       beside,
     );
+  }
+
+  /** The active preset of the second session. */
+  private get besideLabel(): string {
+    const { presets, secondView } = this.parts;
+    return activeLabel(presets.value, secondView?.session.value?.parameters) ?? "second view";
   }
 
   /** Sets the parameters of a step, if this viewer may, and shows its view. */

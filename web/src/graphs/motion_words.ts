@@ -1,6 +1,6 @@
 import type { BreathMotion } from "./breath_motion";
 
-/** Smaller changes of a dome [mm] and smaller breaths [l] are called none. */
+/** Smaller changes of a dome [mm] and smaller breaths [l] are reported as no motion. */
 const leastMillimetres = 1;
 const leastLitres = 0.02;
 
@@ -10,20 +10,28 @@ interface Move {
   millimetres: number;
 }
 
-/**
- * Returns what a breath does in words: "The right dome rises by 7 mm while the left falls by 16: paradoxical motion. A
- * breath brings 0.39 l." With a healthy breath to compare: "... 0.39 l instead of 0.50. When healthy, ...".
- */
-export function motionWords(motion: BreathMotion, healthy?: BreathMotion): string {
-  const words = [domeWords(motion), airWords(motion, healthy)];
-  if (healthy !== undefined) words.push(`Healthy: ${uncapitalised(domeWords(healthy))}`);
-  return words.filter((each) => each !== "" && each !== "Healthy: ").join(" ");
+/** A breath to compare with, and what it is called: "Quiet, supine". */
+export interface NamedMotion {
+  label: string;
+  motion: BreathMotion;
 }
 
-function airWords({ tidalVolume }: BreathMotion, healthy: BreathMotion | undefined): string {
+/**
+ * Returns what a breath does in words: "The right dome rises by 7 mm while the left falls by 16 mm: paradoxical motion.
+ * A breath brings 0.39 l of air." With another breath: "... 0.39 l of air instead of 0.50. Quiet, supine: both domes
+ * fall, the right by 13 mm and the left by 7."
+ */
+export function motionWords(motion: BreathMotion, other?: NamedMotion): string {
+  const words = [domeWords(motion), airWords(motion, other?.motion)];
+  const domes = other === undefined ? "" : domeWords(other.motion);
+  if (other !== undefined && domes !== "") words.push(`${capitalised(other.label)}: ${uncapitalised(domes)}`);
+  return words.filter((each) => each !== "").join(" ");
+}
+
+function airWords({ tidalVolume }: BreathMotion, other: BreathMotion | undefined): string {
   const litres = (cubicMetres: number) => (1000 * cubicMetres).toFixed(2);
   if (1000 * tidalVolume < leastLitres) return "No air moves.";
-  const instead = healthy === undefined ? "" : ` instead of ${litres(healthy.tidalVolume)}`;
+  const instead = other === undefined ? "" : ` instead of ${litres(other.tidalVolume)}`;
   return `A breath brings ${litres(tidalVolume)} l of air${instead}.`;
 }
 
@@ -51,6 +59,10 @@ function phrase({ way, millimetres }: Move): string {
 }
 
 const side = ({ name }: Move) => name.replace(/ dome$/, "");
+
+function capitalised(words: string): string {
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
 
 function uncapitalised(words: string): string {
   return words.charAt(0).toLowerCase() + words.slice(1);

@@ -3,7 +3,7 @@ import { valueAt, type TimeSeries } from "../state/time_series";
 /** Number of points of a drawn curve. */
 const points = 41;
 
-/** A curve that somebody expects over a span of simulated time: a flat line at first, drawn over by hand. */
+/** A predicted curve over a span of simulated time: flat at first, changed by drawing. */
 export class Prediction {
   readonly values: number[];
 
@@ -14,6 +14,13 @@ export class Prediction {
     first: number,
   ) {
     this.values = Array<number>(points).fill(first);
+  }
+
+  /** Returns the same curve over a span of another length [simulated s]. */
+  over(length: number): Prediction {
+    const stretched = new Prediction(this.start, length, this.values[0]);
+    this.values.forEach((value, i) => (stretched.values[i] = value));
+    return stretched;
   }
 
   /** The end of the span [simulated s]. */

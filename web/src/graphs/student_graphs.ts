@@ -2,9 +2,7 @@ import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { type TimeSeries, valueAt } from "../state/time_series";
 import type { MotionKeys } from "./breath_motion";
 import { domeHeights, graphsOf, type GraphSpec } from "./catalogue";
-
-/** Pascals per centimetre of water. */
-const cmH2O = 98.0665;
+import { cmH2O } from "./units";
 
 /** Returns the graphs of the student view: lung volume, and the height of the domes and the pressure around the lungs. */
 export function studentGraphs(frame: Frame): { volume: GraphSpec | undefined; others: GraphSpec[] } {

@@ -1,3 +1,6 @@
+/** Pascals per centimetre of water. */
+export const cmH2O = 98.0665;
+
 /** Units of the user interface by SI unit. */
 const displayUnits: Record<string, [name: string, factor: number]> = {
   m: ["mm", 1000],

@@ -4,7 +4,7 @@ import type { Values } from "../state/undo_history";
 /** Activations of the deepest breath, preset "deep" of the scene `thorax`. */
 export const fullActivations = { diaphragm: 0.6, intercostal: 1.62 };
 
-/** How somebody breathes, in the words of a class. */
+/** Breathing effort, as the student view shows it. */
 export interface Effort {
   /** Mean share of the deepest breath's activations, diaphragm and intercostal muscles, from 0. */
   depth: number;
@@ -14,13 +14,18 @@ export interface Effort {
   belly: number | undefined;
 }
 
+/** Returns the time of one breath [s]; 4 for a scene that has none. */
+export function breathLengthOf(of: Pick<Parameters, "breathLength"> | undefined): number {
+  return of?.breathLength ?? 4;
+}
+
 /** Returns the effort of live parameters: with u = activation / full activation, depth (uD + uI) / 2, belly uD / (uD + uI). */
 export function effortOf(
   of: Pick<Parameters, "diaphragmActivation" | "intercostalActivation" | "breathLength">,
 ): Effort {
   const diaphragm = (of.diaphragmActivation ?? 0) / fullActivations.diaphragm;
   const sum = diaphragm + (of.intercostalActivation ?? 0) / fullActivations.intercostal;
-  return { depth: sum / 2, rate: 60 / (of.breathLength ?? 4), belly: sum > 0 ? diaphragm / sum : undefined };
+  return { depth: sum / 2, rate: 60 / breathLengthOf(of), belly: sum > 0 ? diaphragm / sum : undefined };
 }
 
 /** Returns the activations of a depth and a share of the diaphragm: the inverse of `effortOf`. */

@@ -19,6 +19,12 @@ export function activePreset(presets: Preset[], parameters: Parameters | undefin
   return parameters === undefined ? undefined : presets.find((preset) => isActive(preset, parameters));
 }
 
+/** Returns the label of the active preset; undefined if none is active. */
+export function activeLabel(presets: Preset[], parameters: Parameters | undefined): string | undefined {
+  const active = activePreset(presets, parameters);
+  return active && presetLabel(active);
+}
+
 /** True if all parameters that the preset sets have its values. */
 export function isActive(preset: Preset, parameters: Parameters): boolean {
   return ParametersSchema.fields.every((field) => {

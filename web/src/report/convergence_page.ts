@@ -51,5 +51,5 @@ export function convergencePlots({ rows }: ConvergenceTable): HTMLElement[] {
       dot(points, { x: "x", y: "at", stroke: "#00609f", strokeWidth: 2, r: 5, title: "output" }),
     ],
   });
-  return [figure(title, "One point an output; the table names them.", drawn)];
+  return [figure(title, "One point per output; the table names them.", drawn)];
 }

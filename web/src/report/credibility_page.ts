@@ -32,11 +32,11 @@ const risks: Record<RiskLevel, string> = {
   [RiskLevel.HIGH]: "high",
 };
 
-/** Returns the report: the judgement, fifteen verdicts, and a part for each section. */
+/** Returns the report: the judgement, the verdicts, and a part for each section. */
 export function credibilityParts(report: CredibilityReport): HTMLElement[] {
   return [
     judgement(report),
-    make("h2", {}, "Fifteen sections"),
+    make("h2", {}, `${report.sections.length} sections`),
     summary(report),
     make("p", { className: "none" }, howToRead),
     ...report.sections.map((section) => sectionPart(report, section)),

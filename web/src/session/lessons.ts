@@ -1,5 +1,11 @@
 import { fromJson, type JsonValue } from "@bufbuild/protobuf";
-import { type Lesson, LessonSchema, type LessonStep, type Question } from "../gen/phrenic/v1/lesson_pb";
+import {
+  type Lesson,
+  LessonSchema,
+  type LessonStep,
+  type LessonView,
+  type Question,
+} from "../gen/phrenic/v1/lesson_pb";
 
 /** A place in a lesson: the name of its file and the number of a step from 1. */
 export interface LessonPlace {
@@ -7,13 +13,13 @@ export interface LessonPlace {
   step: number;
 }
 
-/** Returns the parsed JSON of a file of the page. Throws Error if there is none. */
+/** Returns the parsed JSON of a file of the page. Throws Error if the server does not return it. */
 export type FetchJson = (path: string) => Promise<JsonValue>;
 
 /** Fetches a file that is served beside the page. */
 export const fetchJson: FetchJson = async (path) => {
   const response = await fetch(path);
-  if (!response.ok) throw new Error(`${path}: the server has no such file`);
+  if (!response.ok) throw new Error(`${path}: the server answered with HTTP status ${response.status}`);
   return (await response.json()) as JsonValue;
 };
 
@@ -28,6 +34,37 @@ export async function loadLesson(name: string, fetchFile: FetchJson): Promise<Le
   const lesson = fromJson(LessonSchema, await fetchFile(`lessons/${name}.json`));
   if (lesson.steps.length === 0) throw new Error(`lessons/${name}.json: steps: a lesson needs at least one`);
   return lesson;
+}
+
+/** The scene of a session, and the names that the views of its lessons may use. */
+export interface SceneNames {
+  scene: string;
+  cameras: readonly string[];
+  cuts: readonly string[];
+  colourings: readonly string[];
+  layers: readonly string[];
+}
+
+/** Throws Error if the lesson is about another scene, or, naming the field, if a view has an unknown name. */
+export function checkLesson({ scene, steps }: Lesson, names: SceneNames): void {
+  if (scene !== names.scene)
+    throw new Error(
+      `it is about the scene "${scene}" and this session shows "${names.scene}": open a session of "${scene}"`,
+    );
+  steps.forEach(({ view }, i) => view && checkView(view, `steps[${i}].view`, names));
+}
+
+function checkView({ camera, cut, colouring, hiddenLayers }: LessonView, path: string, names: SceneNames): void {
+  const fields: [string, string[], readonly string[]][] = [
+    ["camera", [camera], names.cameras],
+    ["cut", [cut], names.cuts],
+    ["colouring", [colouring], names.colourings],
+    ["hiddenLayers", hiddenLayers, names.layers],
+  ];
+  for (const [field, values, known] of fields) {
+    const unknown = values.find((value) => value !== "" && !known.includes(value));
+    if (unknown !== undefined) throw new Error(`${path}.${field}: "${unknown}" is not one of ${known.join(", ")}`);
+  }
 }
 
 /** Returns the preset of a step: its own or that of the last step before that names one. */

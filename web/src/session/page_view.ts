@@ -21,10 +21,9 @@ export function rememberPageView(view: PageView, storage: KeyValueStorage): void
   storage.setItem(key, view);
 }
 
-/** Returns the query string `query` with the view in it; the expert view is the default and is not named. */
+/** Returns the query string `query` with the view in it: without it, the browser's memory decides. */
 export function withPageView(query: string, view: PageView): string {
   const parameters = new URLSearchParams(query);
-  if (view === "student") parameters.set("view", view);
-  else parameters.delete("view");
+  parameters.set("view", view);
   return `?${parameters}`;
 }

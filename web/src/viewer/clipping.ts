@@ -1,7 +1,8 @@
 import * as THREE from "three";
 
 /** The anatomical planes, or no clipping. */
-export type CutKind = "none" | "sagittal" | "coronal" | "transverse";
+export const cutKinds = ["none", "sagittal", "coronal", "transverse"] as const;
+export type CutKind = (typeof cutKinds)[number];
 
 /** A cut through the scene by an anatomical plane. */
 export interface Cut {

@@ -4,7 +4,8 @@ import * as THREE from "three";
  * Named views in the patient frame: +x left, +y posterior, +z superior. The "front" view has the patient's left on the
  * right.
  */
-export type ViewName = "home" | "front" | "back" | "left" | "right" | "top" | "bottom";
+export const viewNames = ["home", "front", "back", "left", "right", "top", "bottom"] as const;
+export type ViewName = (typeof viewNames)[number];
 
 const directions: Record<ViewName, [number, number, number]> = {
   home: [0.36, -1, 0.2],

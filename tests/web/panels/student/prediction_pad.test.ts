@@ -35,6 +35,31 @@ test("ABreathIsDrawnByKeysThenPlayedAndMeasured", async () => {
   expect(pad.element.querySelector(".seen")!.getAttribute("points")!.split(" ")).toHaveLength(5);
 });
 
+test("ABreathThatIsChosenAfterwardsSetsTheSpan", async () => {
+  const controller = new SessionController(new FakeServer().api, "thorax", new FakeClock());
+  const choose = (breathLength: number, revision: bigint) =>
+    controller.receive(
+      create(SessionSchema, { revision, speed: 1, parameters: create(ParametersSchema, { breathLength }) }),
+    );
+  choose(4, 1n);
+  const history = new TimeSeries(60);
+  history.add(2, [["v", 0.0025]]);
+  const pad = new PredictionPad({ controller, history, key: () => "v" });
+  const words = () => {
+    pad.draw();
+    return pad.element.querySelector("#prediction-words")!.textContent;
+  };
+  pad.element.querySelector<HTMLElement>("#predict")!.click();
+  await settle();
+  choose(8, 2n);
+  pad.element.querySelector<HTMLElement>("#predict-play")!.click();
+  await settle();
+  history.add(7, [["v", 0.0025]]);
+  expect(words()).toBe("The breath is played …");
+  history.add(10, [["v", 0.0025]]);
+  expect(words()).toContain("0.00 l apart");
+});
+
 test("AResetEndsThePrediction", async () => {
   const controller = new SessionController(new FakeServer().api, "thorax", new FakeClock());
   const history = new TimeSeries(60);

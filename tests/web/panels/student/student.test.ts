@@ -1,5 +1,7 @@
 import { create } from "@bufbuild/protobuf";
-import { beforeEach, expect, test } from "vitest";
+import { beforeEach, expect, test, vi } from "vitest";
+import { sceneNames, whenShown } from "../../../../web/src/app/lesson_scene";
+import { LayerStyles } from "../../../../web/src/appearance/layer_styles";
 import { ParametersSchema } from "../../../../web/src/gen/phrenic/v1/parameters_pb";
 import { type Preset, PresetSchema } from "../../../../web/src/gen/phrenic/v1/scene_pb";
 import { SessionSchema } from "../../../../web/src/gen/phrenic/v1/session_pb";
@@ -7,6 +9,7 @@ import { Choices } from "../../../../web/src/panels/student/choices";
 import { compareButton } from "../../../../web/src/panels/student/compare_button";
 import { LessonCard } from "../../../../web/src/panels/student/lesson_card";
 import { sliders } from "../../../../web/src/panels/student/sliders";
+import { fetchJson } from "../../../../web/src/session/lessons";
 import { SessionController } from "../../../../web/src/session/session_controller";
 import { Signal } from "../../../../web/src/state/signal";
 import { FakeClock, settle } from "../../fakes/fake_clock";
@@ -130,7 +133,8 @@ function card(files: Record<string, unknown>) {
     if (!(path in files)) throw new Error(`${path}: the server has no such file`);
     return files[path] as never;
   };
-  return { card: new LessonCard({ fetchFile, play: (_, step) => played.push(step.title) }), played };
+  const names = async () => sceneNames("thorax", ["ribs", "lungs"]);
+  return { card: new LessonCard({ fetchFile, names, play: (_, step) => played.push(step.title) }), played };
 }
 
 test("ALessonIsPlayedStepByStep", async () => {
@@ -161,11 +165,22 @@ test("AWrongAnswerCanBeTriedAgainAndARightOneIsExplained", async () => {
   expect(answer(0)).toBe("Right. Because.");
 });
 
+const withView = (view: object) => ({ ...lesson, steps: [{ ...lesson.steps[0], view }] });
+
 test.each([
   ["missing", {}, "the server has no such file"],
   ["../../etc", {}, "is not a name"],
   ["empty", { "lessons/empty.json": { title: "a", summary: "b", scene: "c" } }, "a lesson needs at least one"],
   ["odd", { "lessons/odd.json": { title: "a", steps: [{ colour: "red" }] } }, "colour"],
+  ["other", { "lessons/other.json": { ...lesson, scene: "cube" } }, 'this session shows "thorax"'],
+  [
+    "high",
+    { "lessons/high.json": withView({ camera: "above" }) },
+    'steps[0].view.camera: "above" is not one of home, ',
+  ],
+  ["cut", { "lessons/cut.json": withView({ cut: "oblique" }) }, 'steps[0].view.cut: "oblique"'],
+  ["red", { "lessons/red.json": withView({ colouring: "red" }) }, 'steps[0].view.colouring: "red" is not one of own, '],
+  ["fat", { "lessons/fat.json": withView({ hiddenLayers: ["ribs", "fat"] }) }, 'steps[0].view.hiddenLayers: "fat"'],
 ])("ABadLessonIsRefusedWithAReason %s", async (name, files, words) => {
   const { card: player } = card(files);
   await player.start({ name, step: 1 });
@@ -174,11 +189,43 @@ test.each([
   expect(player.place.value).toBeUndefined();
 });
 
-test("TheListNamesEveryLesson", async () => {
-  const { card: player } = card({ "lessons/index.json": ["one"], "lessons/one.json": lesson });
-  const fold = player.element.querySelector("details")!;
+/** Returns the list of lessons, opened. */
+async function listOf(files: Record<string, unknown>): Promise<HTMLElement> {
+  const { element } = card(files).card;
+  const fold = element.querySelector("details")!;
   fold.open = true;
   fold.ontoggle?.(new Event("toggle") as ToggleEvent);
   await settle();
-  expect(player.element.querySelector('[data-lesson="one"]')!.textContent).toBe("How we breatheA breath.");
+  return fold.querySelector("ul")!;
+}
+
+test("TheListNamesEveryLessonAboutTheScene", async () => {
+  const other = { ...lesson, scene: "cube" };
+  const files = { "lessons/index.json": ["one", "two"], "lessons/one.json": lesson, "lessons/two.json": other };
+  const list = await listOf(files);
+  expect(list.querySelector('[data-lesson="one"]')!.textContent).toBe("How we breatheA breath.");
+  expect(list.childElementCount).toBe(1);
+});
+
+test("ASceneWithoutLessonsSaysSo", async () => {
+  const list = await listOf({ "lessons/index.json": ["two"], "lessons/two.json": { ...lesson, scene: "cube" } });
+  expect(list.textContent).toBe("There is no lesson about the scene “thorax”.");
+});
+
+test("AListThatIsNotServedIsAnError", async () => {
+  expect((await listOf({})).textContent).toContain("The lessons cannot be listed: lessons/index.json");
+});
+
+test("TheAnswerOfTheServerIsInTheWords", async () => {
+  vi.stubGlobal("fetch", async () => new Response("", { status: 503 }));
+  await expect(fetchJson("lessons/a.json")).rejects.toThrow("lessons/a.json: the server answered with HTTP status 503");
+  vi.unstubAllGlobals();
+});
+
+test("TheNamesOfASceneAreKnownOnceItIsShown", async () => {
+  const styles = new LayerStyles();
+  const names = whenShown(controller.session, styles);
+  controller.receive(create(SessionSchema, { scene: "thorax", revision: ++revision }));
+  styles.all.set([{ layer: "ribs", title: "Ribs", color: "", opacity: 1, visible: true }]);
+  expect(await names).toMatchObject({ scene: "thorax", layers: ["ribs"] });
 });

@@ -3,7 +3,7 @@ import type { Frame } from "../../gen/phrenic/v1/frames_pb";
 import type { Preset } from "../../gen/phrenic/v1/scene_pb";
 import { domeHeights, domeHelp } from "../../graphs/catalogue";
 import { differences, shortDifferences } from "../../parameters/differences";
-import { activePreset, presetLabel } from "../../parameters/presets";
+import { activeLabel } from "../../parameters/presets";
 import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
 
@@ -56,8 +56,7 @@ export class ViewHeaders {
   private compare(): void {
     const [here, there] = this.pair.map(({ session }) => session.value?.parameters);
     this.pair.forEach(({ session, sessionId }, i) => {
-      const preset = activePreset(this.presets.value, session.value?.parameters);
-      this.names[i].textContent = preset === undefined ? sessionId : presetLabel(preset);
+      this.names[i].textContent = activeLabel(this.presets.value, session.value?.parameters) ?? sessionId;
     });
     this.differences.textContent = shortDifferences(here, there) || "Same parameters";
     this.differences.title = differences(here, there);

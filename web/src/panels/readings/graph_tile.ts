@@ -12,6 +12,7 @@ export class GraphTile {
   readonly element: HTMLElement;
   private readonly plot: Plot;
   private readonly readings: HTMLElement[];
+  private readonly swatches: HTMLElement[];
   private data: GraphData = { times: [], abscissa: undefined, curves: [] };
 
   constructor(
@@ -22,6 +23,9 @@ export class GraphTile {
   ) {
     this.plot = new Plot(spec, events);
     this.readings = spec.curves.map(() => make("b"));
+    this.swatches = spec.curves.map(({ dashed }) =>
+      make("span", { className: dashed === true ? "swatch dashed" : "swatch" }),
+    );
     const keys = spec.curves.map((curve, i) => this.key(curve, i));
     const save = ["SVG", "CSV"].map((kind) => this.saveButton(kind as "SVG" | "CSV"));
     // A single curve needs no legend.
@@ -37,6 +41,8 @@ export class GraphTile {
   show(span: TimeSpan, place: number | undefined): void {
     this.data = graphData(this.spec, this.history, span);
     this.plot.show(this.data, span);
+    // The colours follow the page's, which may have changed.
+    this.spec.curves.forEach(({ order }, i) => (this.swatches[i].style.color = curveColor(order ?? i)));
     this.showValues(place);
   }
 
@@ -55,10 +61,8 @@ export class GraphTile {
     return unit === "" ? title : `${title} [${unit}]`;
   }
 
-  private key({ name, order, dashed }: Curve, place: number): HTMLElement {
-    const swatch = make("span", { className: dashed === true ? "swatch dashed" : "swatch" });
-    swatch.style.color = curveColor(order ?? place);
-    return make("span", { className: "key" }, swatch, make("span", {}, name), this.readings[place]);
+  private key({ name }: Curve, place: number): HTMLElement {
+    return make("span", { className: "key" }, this.swatches[place], make("span", {}, name), this.readings[place]);
   }
 
   private saveButton(kind: "SVG" | "CSV"): HTMLElement {

@@ -9,7 +9,7 @@ import type { Signal } from "../../state/signal";
 /** Choices of a cause that are shown before "More" is pressed. */
 const shownAtFirst = 8;
 
-/** Large buttons that choose a preset, by what causes the breath: health, illness, a machine. */
+/** Large buttons that choose a preset, grouped by cause: health, illness, a machine. */
 export class Choices {
   readonly element = make("section", { id: "choices", ariaLabel: "Choose a breath", hidden: true });
   private readonly causes = make("div", { className: "causes", role: "group", ariaLabel: "Cause" });

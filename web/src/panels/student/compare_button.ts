@@ -9,7 +9,7 @@ export interface HealthyComparison {
   presets: Signal<Preset[]>;
   /** Opens the page with this query string. */
   open(query: string): void;
-  /** Closes the second view; undefined if there is none. */
+  /** Closes the second view; undefined without a second view. */
   close: (() => void) | undefined;
 }
 

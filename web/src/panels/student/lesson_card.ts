@@ -1,13 +1,22 @@
 import { make } from "../../dom/elements";
 import { alertMessage } from "../../dom/rows";
 import type { Lesson, LessonStep } from "../../gen/phrenic/v1/lesson_pb";
-import { type FetchJson, lessonNames, type LessonPlace, loadLesson } from "../../session/lessons";
+import {
+  checkLesson,
+  type FetchJson,
+  lessonNames,
+  type LessonPlace,
+  loadLesson,
+  type SceneNames,
+} from "../../session/lessons";
 import { Signal } from "../../state/signal";
 import { questionForm } from "./question_form";
 
 /** What a lesson does to the page. */
 export interface LessonActions {
   fetchFile: FetchJson;
+  /** Returns the scene of the session and its names, once it is shown. */
+  names(): Promise<SceneNames>;
   /** Shows a step in the simulation. */
   play(lesson: Lesson, step: LessonStep): void;
 }
@@ -15,7 +24,7 @@ export interface LessonActions {
 /** The list of lessons, and the lesson that is played: caption, task, question, progress, next and back. */
 export class LessonCard {
   readonly element = make("section", { id: "lesson", ariaLabel: "Lesson" });
-  /** The lesson and step that are shown; undefined without a lesson. */
+  /** The lesson and step that are loaded or shown; undefined without a lesson. */
   readonly place = new Signal<LessonPlace | undefined>(undefined);
   private lesson: Lesson | undefined;
 
@@ -25,16 +34,20 @@ export class LessonCard {
 
   /** Loads and starts a lesson at a step; a step beyond the end is the last one. */
   async start({ name, step }: LessonPlace): Promise<void> {
+    this.lesson = undefined;
+    this.place.set({ name, step });
     try {
-      this.lesson = await loadLesson(name, this.actions.fetchFile);
-      this.show({ name, step: Math.min(step, this.lesson.steps.length) });
+      const [lesson, names] = await Promise.all([loadLesson(name, this.actions.fetchFile), this.actions.names()]);
+      checkLesson(lesson, names);
+      this.lesson = lesson;
+      this.show({ name, step: Math.min(step, lesson.steps.length) });
     } catch (error) {
       this.leave();
       this.element.append(alertMessage(`This lesson cannot be played: ${(error as Error).message}.`));
     }
   }
 
-  /** Goes on by a number of steps; does nothing at the ends or without a lesson. */
+  /** Moves by a number of steps; does nothing at the ends or without a lesson. */
   move(by: number): void {
     const { value } = this.place;
     if (value === undefined || this.lesson === undefined) return;
@@ -78,7 +91,7 @@ export class LessonCard {
     this.showList();
   }
 
-  /** The list is loaded when it is opened first. */
+  /** The list of the lessons about this scene is loaded when it is opened first. */
   private showList(): void {
     const list = make("ul");
     const summary = make("summary", {}, "Lessons");
@@ -93,9 +106,12 @@ export class LessonCard {
     try {
       const names = await lessonNames(this.actions.fetchFile);
       const lessons = await Promise.all(names.map((name) => loadLesson(name, this.actions.fetchFile)));
-      list.replaceChildren(...lessons.map((lesson, i) => this.row(names[i], lesson)));
+      const { scene } = await this.actions.names();
+      const rows = lessons.flatMap((lesson, i) => (lesson.scene === scene ? [this.row(names[i], lesson)] : []));
+      const none = make("li", {}, `There is no lesson about the scene “${scene}”.`);
+      list.replaceChildren(...(rows.length > 0 ? rows : [none]));
     } catch (error) {
-      list.replaceChildren(make("li", {}, alertMessage(`There are no lessons: ${(error as Error).message}.`)));
+      list.replaceChildren(make("li", {}, alertMessage(`The lessons cannot be listed: ${(error as Error).message}.`)));
     }
   }
 

@@ -4,6 +4,7 @@ import type { Parameters } from "../../gen/phrenic/v1/parameters_pb";
 import { breathMotion, type BreathMotion, type MotionKeys } from "../../graphs/breath_motion";
 import { motionWords } from "../../graphs/motion_words";
 import { motionKeys } from "../../graphs/student_graphs";
+import { breathLengthOf } from "../../parameters/effort";
 import type { TimeSeries } from "../../state/time_series";
 
 /** A session whose breath is told in words. */
@@ -13,10 +14,15 @@ export interface BreathSource {
   parameters(): Parameters | undefined;
 }
 
+/** A second session, and what it is called. */
+export interface NamedSource extends BreathSource {
+  label: string;
+}
+
 /** Shortest time between two sentences, so that a screen reader is not interrupted [simulated s]. */
 const interval = 4;
 
-/** The last breath in a sentence with its numbers, beside that of a second session if there is one. */
+/** The last breath in a sentence with its numbers, beside that of the second if a second session is shown. */
 export class MotionSentence {
   readonly element = make("p", { id: "motion-words" });
   private keys: MotionKeys | undefined;
@@ -28,17 +34,19 @@ export class MotionSentence {
     this.element.setAttribute("role", "status");
   }
 
-  /** Learns from a frame where the values are. */
+  /** Reads the places of the values from a frame. */
   receive(frame: Frame): void {
     this.keys ??= motionKeys(frame);
   }
 
-  /** Tells the last breath of the first session; waits for a whole breath after each change. */
-  show(here: BreathSource, beside: BreathSource | undefined): void {
+  /** Shows the last breath as a sentence; waits for a whole breath after each change. */
+  show(here: BreathSource, beside: NamedSource | undefined): void {
     const now = here.history.times.at(-1) ?? 0;
     const [own, other] = [here, beside].map((each, i) => each && this.motionOf(each, this.changes[i]));
     const waiting = own === undefined || (beside !== undefined && other === undefined);
-    const words = waiting ? "Wait for a whole breath …" : motionWords(own, other);
+    const words = waiting
+      ? "Wait for a whole breath …"
+      : motionWords(own, beside && other && { label: beside.label, motion: other });
     const changed = this.changes.some((each) => each.takeChange());
     if (!changed && !waiting && this.told !== "" && Math.abs(now - this.toldAt) < interval) return;
     if (waiting && this.told !== "" && !changed) return;
@@ -50,7 +58,7 @@ export class MotionSentence {
     const values = parameters();
     if (values === undefined || this.keys === undefined) return undefined;
     const since = change.timeOfChange(JSON.stringify(values), history.times.at(-1) ?? 0);
-    return breathMotion(history, this.keys, values.breathLength ?? 4, since);
+    return breathMotion(history, this.keys, breathLengthOf(values), since);
   }
 }
 
@@ -60,7 +68,7 @@ class ChangeDetector {
   private since = 0;
   private changed = false;
 
-  /** Returns the simulated time [s] of the last change; the first values are none. */
+  /** Returns the simulated time [s] of the last change; 0 if the parameters have not changed. */
   timeOfChange(values: string, now: number): number {
     if (this.seen !== undefined && this.seen !== values) {
       this.since = now;

@@ -1,5 +1,6 @@
 import { make } from "../../dom/elements";
 import { Prediction } from "../../graphs/prediction";
+import { breathLengthOf } from "../../parameters/effort";
 import type { SessionController } from "../../session/session_controller";
 import type { TimeSeries } from "../../state/time_series";
 
@@ -21,7 +22,7 @@ const nudge = 0.00005;
 const recent = 8;
 
 /**
- * Predict, then play: draws the air in the lungs that somebody expects over the next breath, plays it, and shows both
+ * Predict, then play: records the user's predicted lung volume over the next breath, plays the breath, and shows both
  * curves and their mean distance.
  */
 export class PredictionPad {
@@ -80,7 +81,7 @@ export class PredictionPad {
     if (time === undefined || value === undefined) return;
     const shown = values.slice(history.indexAt(time - recent));
     this.range = [Math.min(...shown) - below, Math.max(...shown) + above];
-    this.prediction = new Prediction(time, controller.session.value?.parameters?.breathLength ?? 4, value);
+    this.prediction = new Prediction(time, this.breathLength, value);
     this.cursor = 0;
     this.seen.setAttribute("points", "");
     this.show("drawing");
@@ -89,8 +90,15 @@ export class PredictionPad {
   }
 
   private async see(): Promise<void> {
+    // Another breath may have been chosen since.
+    this.prediction = this.prediction?.over(this.breathLength);
+    this.drawCurve();
     this.show("playing");
     await this.source.controller.play(this.source.controller.session.value?.speed || 1);
+  }
+
+  private get breathLength(): number {
+    return breathLengthOf(this.source.controller.session.value?.parameters);
   }
 
   private tell(distance: number): void {

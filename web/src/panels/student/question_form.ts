@@ -31,7 +31,7 @@ export function questionForm(question: Question): HTMLElement {
 
 interface Rows {
   rows: HTMLElement[];
-  /** True if the answer is right; undefined if there is none. */
+  /** True if the answer is right; undefined if nothing was entered. */
   right(): boolean | undefined;
 }
 

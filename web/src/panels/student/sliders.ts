@@ -1,11 +1,10 @@
 import { make } from "../../dom/elements";
 import type { Parameters } from "../../gen/phrenic/v1/parameters_pb";
+import { cmH2O } from "../../graphs/units";
 import { activationsOf, effortOf } from "../../parameters/effort";
 import type { SessionController } from "../../session/session_controller";
 import type { Values } from "../../state/undo_history";
 
-/** Pascals per centimetre of water. */
-const cmH2O = 98.0665;
 /** Range of the rate [1/min] and the largest pressure of the machine [cmH2O]. */
 const [slowest, quickest, strongest] = [4, 60, 25];
 

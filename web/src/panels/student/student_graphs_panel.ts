@@ -8,6 +8,12 @@ import { GraphTile } from "../readings/graph_tile";
 /** Time shown [simulated s]. */
 const span = 12;
 
+/** The data of a second session, and what it is called now. */
+export interface SeriesBeside {
+  history: TimeSeries;
+  label(): string;
+}
+
 /** Two graphs: lung volume, and the domes or the pressure. A second session has dashed curves in the same graphs. */
 export class StudentGraphsPanel {
   readonly element = make("section", { id: "student-graphs", ariaLabel: "Graphs" });
@@ -17,18 +23,20 @@ export class StudentGraphsPanel {
   private specs: ReturnType<typeof studentGraphs> = { volume: undefined, others: [] };
   private shown: GraphTile[] = [];
   private chosen = 0;
+  /** The name of the second session in the graphs. */
+  private label = "";
   private key = "";
 
   /** `beside` is undefined without a second session. */
   constructor(
     private readonly history: TimeSeries,
-    private readonly beside: TimeSeries | undefined,
+    private readonly beside: SeriesBeside | undefined,
     private readonly fileName: () => string,
   ) {
     this.element.append(make("h2", { className: "unseen" }, "Graphs"), this.tiles, this.kinds);
   }
 
-  /** Learns from a frame which graphs there are. */
+  /** Reads the available graphs from a frame. */
   receive(frame: Frame): void {
     const specs = studentGraphs(frame);
     const key = JSON.stringify(specs);
@@ -40,7 +48,10 @@ export class StudentGraphsPanel {
   /** Draws the newest data. */
   draw(): void {
     if (this.element.clientWidth === 0) return;
-    if (this.beside !== undefined) joinSeries(this.joined, this.history, this.beside, span);
+    if (this.beside !== undefined) {
+      joinSeries(this.joined, this.history, this.beside.history, span);
+      if (this.beside.label() !== this.label) this.build();
+    }
     const end = Math.max(this.drawn.times.at(-1) ?? 0, span);
     for (const tile of this.shown) tile.show({ start: end - span, end }, undefined);
   }
@@ -56,6 +67,7 @@ export class StudentGraphsPanel {
 
   private build(): void {
     const { volume, others } = this.specs;
+    this.label = this.beside?.label() ?? "";
     const specs = [volume, others[this.chosen]].filter((each) => each !== undefined);
     const events = { zoom: () => undefined, resume: () => undefined, cursor: () => undefined };
     this.shown = specs.map((spec) => new GraphTile(this.withBeside(spec), this.drawn, this.fileName, events));
@@ -65,7 +77,7 @@ export class StudentGraphsPanel {
   }
 
   private withBeside(spec: GraphSpec): GraphSpec {
-    return this.beside === undefined ? spec : besideGraph(spec, "chosen", "healthy");
+    return this.beside === undefined ? spec : besideGraph(spec, "chosen", this.label);
   }
 
   private kindButton(title: string, i: number): HTMLElement {
