@@ -18,8 +18,8 @@ ConstraintResidual LargestResidual(const Model& model, const State& state) {
   return largest;
 }
 
-std::string ResidualWarning(const Model& model, const ConstraintResidual& residual) {
-  if (residual.metres <= kTolerated * model.size) return "";
+std::string ResidualWarning(const Model& model, const v1::Parameters& parameters, const ConstraintResidual& residual) {
+  if (!parameters.apply_links() || residual.metres <= kTolerated * model.size) return "";
   return absl::StrFormat(
       "%s does not hold, it is off by %.4g mm: take out links that contradict each other, move less, or use "
       "PROJECTION_EXACT",

@@ -20,8 +20,8 @@ struct ConstraintResidual {
 ConstraintResidual LargestResidual(const Model& model, const State& state);
 
 // Returns what is wrong and the remedy if the violation is more than what projections leave, 1e-6 of the scene's size;
-// empty if it is not. For people: a warning of every output.
-std::string ResidualWarning(const Model& model, const ConstraintResidual& residual);
+// empty if it is not, or if the parameters switch the constraints off. For people: a warning of every output.
+std::string ResidualWarning(const Model& model, const v1::Parameters& parameters, const ConstraintResidual& residual);
 
 }  // namespace phrenic
 

@@ -23,7 +23,7 @@ void WriteResiduals(const Run& run, v1::Session& status) {
   const ConstraintResidual residual = LargestResidual(run.model(), run.state());
   status.set_constraint_residual(residual.metres);
   status.set_residual_constraint(std::string(residual.constraint));
-  if (std::string warning = ResidualWarning(run.model(), residual); !warning.empty()) {
+  if (std::string warning = ResidualWarning(run.model(), run.parameters(), residual); !warning.empty()) {
     status.add_warnings(std::move(warning));
   }
 }

@@ -109,14 +109,24 @@ TEST(ConflictingLinks, EndWithAFiniteStateAndSayWhatIsLeft) {
   const double span = (state.x.col(3) - state.x.col(0)).norm();
   EXPECT_GE(LargestResidual(*model, state).metres, (span - 3) / 3 - 1e-9) << "no way to share it out is better";
   EXPECT_LE(LargestResidual(*model, state).metres, span - 3 + 1e-9) << "one link at most bears it all";
-  const std::string warning = ResidualWarning(*model, LargestResidual(*model, state));
+  const std::string warning = ResidualWarning(*model, model->parameters, LargestResidual(*model, state));
   EXPECT_NE(warning.find("rigid-links:row does not hold"), std::string::npos) << warning;
+}
+
+TEST(LinkedChain, IsNotWarnedOfWhenItIsSwitchedOff) {
+  const auto model = CompileText(Net(5, 4, GridPairs(5, 4)));
+  State state = model->InitialState();
+  state.x *= 2;
+  v1::Parameters parameters = model->parameters;
+  EXPECT_NE(ResidualWarning(*model, parameters, LargestResidual(*model, state)), "");
+  parameters.set_apply_links(false);
+  EXPECT_EQ(ResidualWarning(*model, parameters, LargestResidual(*model, state)), "");
 }
 
 TEST(LinkedChain, IsNotWarnedOfWhileItHolds) {
   const auto model = CompileText(Net(5, 4, GridPairs(5, 4)));
   const State state = RunTo(*model, 0.3, 1e-3);
-  EXPECT_EQ(ResidualWarning(*model, LargestResidual(*model, state)), "");
+  EXPECT_EQ(ResidualWarning(*model, model->parameters, LargestResidual(*model, state)), "");
 }
 
 // Implicit steps end too where links cannot hold, and leave as much.

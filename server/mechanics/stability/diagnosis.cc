@@ -73,7 +73,7 @@ std::string Remedy(const Model& model, const v1::Parameters& parameters, const S
     return "a position or velocity was no number even before the step: reset";
   }
   const ConstraintResidual residual = LargestResidual(model, before);
-  if (residual.metres > kContradicts * model.size) {
+  if (parameters.apply_links() && residual.metres > kContradicts * model.size) {
     return absl::StrFormat(
         "%s cannot hold, it is off by %.3g m: take out links that contradict each other or move less",
         std::string(residual.constraint), residual.metres);

@@ -56,7 +56,7 @@ class MotionExport {
     const ConstraintResidual residual = WorstResidual();
     summary.set_constraint_residual(residual.metres);
     summary.set_residual_constraint(std::string(residual.constraint));
-    if (std::string warning = ResidualWarning(model_, residual); !warning.empty()) {
+    if (std::string warning = ResidualWarning(model_, run_.parameters(), residual); !warning.empty()) {
       summary.add_warnings(std::move(warning));
     }
   }

@@ -29,7 +29,8 @@ export class Readout {
     this.bar.style.transform = `translateX(${50 * breath}%)`;
     const pace = session?.state === SessionState.PLAYING ? (session.pace?.timesRealTime ?? 0) : 0;
     this.write("pace", `${pace.toFixed(2)}×`);
-    this.write("links", residualLabel(session?.constraintResidual));
+    const applied = session?.parameters?.applyLinks ?? true;
+    this.write("links", applied ? residualLabel(session?.constraintResidual) : "switched off");
     this.element.querySelector<HTMLElement>(".links")!.hidden = session?.constraintResidual === undefined;
   }
 
