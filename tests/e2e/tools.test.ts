@@ -158,7 +158,7 @@ test("ThePageLoadsQuickly", async () => {
     await page.goto(`${server.url}?session=lungs`);
     await page.waitForFunction(() => (window.phrenic?.firstDrawTime() ?? -1) >= 0);
     times.push(Math.round(await page.evaluate(() => window.phrenic!.firstDrawTime())));
-    expect(asked.length, asked.join(" ")).toBeLessThanOrEqual(15);
+    expect(asked.length, asked.join(" ")).toBeLessThanOrEqual(14);
     await context.close();
   }
   console.log(`first picture after the address, five times [ms]: ${times.join(" ")}`);

@@ -12,29 +12,17 @@
 
 #include "absl/time/clock.h"
 #include "tests/faults/raw.h"
+#include "tests/support/free_ports.h"
 
 namespace phrenic::faults {
 namespace {
 
 constexpr char kScript[] = PHRENIC_SOURCE_DIR "/deploy/guard";
 
-// Returns a port that was free a moment ago; 0 if all are taken.
-int FreePort() {
-  const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof(address);
-  const bool good = bind(probe, reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
-                    getsockname(probe, reinterpret_cast<sockaddr*>(&address), &size) == 0;
-  close(probe);
-  return good ? ntohs(address.sin_port) : 0;
-}
-
 }  // namespace
 
 Guard::Guard(const std::string& folder, const std::string& listen, const std::string& web) {
-  const int port = FreePort();
+  const int port = FreePorts();
   if (port == 0 || !std::filesystem::exists(kScript)) return;
   std::filesystem::create_directories(folder);
   const std::string log = folder + "/guard.log", text = std::to_string(port);

@@ -9,6 +9,7 @@
 #include "tests/cluster/redis_server.h"
 #include "tests/service/certificates.h"
 #include "tests/service/server_fixture.h"
+#include "tests/support/free_ports.h"
 
 namespace phrenic::service {
 namespace {
@@ -32,13 +33,6 @@ TEST(Metadata, WhatGrpcForbidsIsNamed) {
   for (const char* bad : {"", "a/b", "/a", "//b", "/a/", "/a/b/", "/a/b c", "/\n/b"}) {
     EXPECT_FALSE(CheckMethod(bad).ok()) << bad;
   }
-}
-
-int FreePort() {
-  boost::asio::io_context context;
-  return boost::asio::ip::tcp::acceptor(context, {boost::asio::ip::make_address("127.0.0.1"), 0})
-      .local_endpoint()
-      .port();
 }
 
 class GrpcEdge : public ServerFixture {
@@ -90,7 +84,7 @@ class ClusterEdge : public GrpcEdge {
     folder_ = absl::StrCat(testing::TempDir(), "/phrenic-edge-store-", getpid());
     std::filesystem::create_directories(folder_);
     options_.store_dir = folder_;
-    options_.listen = absl::StrCat("127.0.0.1:", FreePort());
+    options_.listen = absl::StrCat("127.0.0.1:", FreePorts());
     options_.cluster = {.redis = redis_->url(), .advertise = options_.listen};
   }
   ~ClusterEdge() override {
@@ -114,7 +108,7 @@ class ClusterOverTls : public testing::Test {
   ClusterOverTls() {
     if (!RedisServer::Installed()) return;
     certificates_.Sign("server");
-    tls_port_ = FreePort();
+    tls_port_ = FreePorts();
     redis_ = std::make_unique<RedisServer>(std::vector<std::string>{
         "--tls-port", std::to_string(tls_port_), "--tls-cert-file", certificates_.File("server"), "--tls-key-file",
         certificates_.Key("server"), "--tls-ca-cert-file", certificates_.File("good"), "--tls-auth-clients", "yes"});
@@ -130,7 +124,7 @@ class ClusterOverTls : public testing::Test {
   // Starts a server that trusts the other ones, and Redis, by the authority `ca`.
   absl::Status Start(const std::string& ca) {
     ServerOptions options;
-    options.listen = absl::StrCat("127.0.0.1:", FreePort());
+    options.listen = absl::StrCat("127.0.0.1:", FreePorts());
     options.store_dir = absl::StrCat(folder_, "/", servers_.size());
     std::filesystem::create_directories(options.store_dir);
     options.tls = {certificates_.File("server"), certificates_.Key("server"), certificates_.File("good")};

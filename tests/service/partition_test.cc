@@ -17,6 +17,7 @@
 #include "tests/cluster/cut_proxy.h"
 #include "tests/cluster/redis_server.h"
 #include "tests/service/call.h"
+#include "tests/support/free_ports.h"
 
 namespace phrenic::service {
 namespace {
@@ -40,7 +41,7 @@ class Member {
   Member(const std::string& folder, int redis_port) {
     ServerOptions options;
     // The other servers call it at the port that they know it by.
-    options.listen = absl::StrCat("127.0.0.1:", FreePort());
+    options.listen = absl::StrCat("127.0.0.1:", FreePorts());
     options.store_dir = folder;
     options.cluster = {.redis = absl::StrCat("redis://127.0.0.1:", redis_port), .advertise = options.listen};
     auto server = Server::Start(options);
@@ -97,18 +98,6 @@ class Member {
   }
 
  private:
-  static int FreePort() {
-    const int descriptor = socket(AF_INET, SOCK_STREAM, 0);
-    sockaddr_in address = {};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    bind(descriptor, reinterpret_cast<sockaddr*>(&address), sizeof address);
-    socklen_t size = sizeof address;
-    getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size);
-    close(descriptor);
-    return ntohs(address.sin_port);
-  }
-
   std::unique_ptr<Server> server_;
   std::unique_ptr<Sessions> sessions_;
   std::unique_ptr<v1::ControlService::Stub> control_;

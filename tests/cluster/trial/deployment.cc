@@ -1,10 +1,8 @@
 #include "tests/cluster/trial/deployment.h"
 
-#include <arpa/inet.h>
 #include <fcntl.h>
 #include <grpcpp/create_channel.h>
 #include <sys/prctl.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -22,6 +20,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/time/clock.h"
+#include "tests/support/free_ports.h"
 
 namespace phrenic::cluster {
 namespace {
@@ -31,27 +30,6 @@ std::string TextOf(const std::string& file) {
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
   return std::move(text).str();
-}
-
-bool IsFree(int port) {
-  const int file = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  const bool is_free = bind(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  close(file);
-  return is_free;
-}
-
-// Returns the first of `count` consecutive free ports below the ephemeral range.
-int FreePorts(int count) {
-  for (int first = 21'000 + getpid() % 100 * 100; first < 32'000; first += count) {
-    bool all_free = true;
-    for (int port = first; port < first + count && all_free; ++port) all_free = IsFree(port);
-    if (all_free) return first;
-  }
-  return 0;
 }
 
 [[noreturn]] void Exec(const std::vector<std::string>& words, const std::string& log) {

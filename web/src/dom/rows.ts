@@ -13,6 +13,12 @@ export function section(title: string, open: boolean, ...children: (Node | strin
   return make("details", { open, className: "section" }, make("summary", {}, title), ...children);
 }
 
+/** Calls `load` when a section is opened for the first time: what the first picture does not need is loaded then. */
+export function loadOnOpen(section: HTMLDetailsElement, load: () => Promise<void>): HTMLDetailsElement {
+  section.addEventListener("toggle", () => void load(), { once: true });
+  return section;
+}
+
 /** Returns a labelled checkbox that looks like a switch. */
 export function switchRow(label: string, help: string, onchange: (on: boolean) => void) {
   const input = make("input", { type: "checkbox", className: "switch" });

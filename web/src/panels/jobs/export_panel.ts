@@ -1,5 +1,5 @@
 import { make } from "../../dom/elements";
-import { alertMessage, labelledRow, section } from "../../dom/rows";
+import { alertMessage, labelledRow, loadOnOpen, section } from "../../dom/rows";
 import { ExportValues } from "../../gen/phrenic/v1/export_pb";
 import type { Body } from "../../geometry/bodies";
 import type { ExportProgress, Exports } from "../../session/exports";
@@ -30,8 +30,8 @@ export function exportPanel(exports: Exports, bodies: Signal<Body[]>): HTMLEleme
     bodyChoice!.hidden = format?.numbersOnly ?? false;
     values!.hidden = (format?.values.length ?? 0) < 2;
   });
-  void exports.loadFormats();
-  return section("Export the motion", false, ...rows, hint, start, progress(exports, start));
+  const panel = section("Export the motion", false, ...rows, hint, start, progress(exports, start));
+  return loadOnOpen(panel, () => exports.loadFormats());
 }
 
 function formatRow(exports: Exports): HTMLElement {

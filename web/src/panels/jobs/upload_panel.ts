@@ -1,5 +1,5 @@
 import { make } from "../../dom/elements";
-import { alertMessage, section } from "../../dom/rows";
+import { alertMessage, loadOnOpen, section } from "../../dom/rows";
 import type { SurfaceReport } from "../../gen/phrenic/v1/inspect_pb";
 import type { UploadProgress, Uploads } from "../../session/uploads";
 
@@ -19,8 +19,7 @@ export function uploadPanel(uploads: Uploads): HTMLElement {
   const open = make("button", { type: "button", id: "upload", onclick: () => file.click() }, "Upload a surface…");
   const place = make("div", { id: "upload-progress" });
   uploads.progress.subscribe((work) => place.replaceChildren(...progressElements(work)));
-  void uploads.loadFormats();
-  return section("Surface files", false, open, file, hint, place);
+  return loadOnOpen(section("Surface files", false, open, file, hint, place), () => uploads.loadFormats());
 }
 
 function progressElements(work: UploadProgress): HTMLElement[] {
