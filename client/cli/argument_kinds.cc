@@ -23,6 +23,7 @@ struct KindRow {
 // The first row that fits applies.
 constexpr KindRow kKindRows[] = {
     {"--output", Kind::kChoice, "FORMAT", "table json jsonl csv"},
+    {"--field", Kind::kOther, "PATH", ""},
     {"--server", Kind::kOther, "HOST:PORT", ""},
     {"--viewer", Kind::kOther, "URL", ""},
     {"--tls-ca", Kind::kFile, "FILE", ""},

@@ -12,6 +12,7 @@
 #include "client/cli/usage_error.h"
 #include "client/connection/connection.h"
 #include "client/connection/errors.h"
+#include "client/print/field.h"
 #include "client/print/output.h"
 #include "server/settings/settings_file.h"
 
@@ -65,6 +66,7 @@ class CommandLine {
                     "table for people, json for programs; lists also as csv, and as jsonl (one JSON document per line)")
         ->envname("PHRENIC_OUTPUT")
         ->capture_default_str();
+    app_.add_option("--field", field_, "print only this value of the JSON: session.tick, sessions.0.id, sessions.*.id");
     app_.add_option("--viewer", context_.viewer,
                     "address of the viewer in links, if not the one that the server reports")
         ->envname("PHRENIC_VIEWER");
@@ -101,11 +103,15 @@ class CommandLine {
   int RunChosen() {
     context_.settings_file = SettingsFile();
     context_.output = OutputOf(output_);
+    if (!field_.empty() && context_.output != Output::kJsonl) context_.output = Output::kJson;
     const CLI::App* command = app_.get_subcommands().front();
     while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
     const Command& row = *FindCommand(commands_, PathOf(*command));
     for (const settings::Setting& setting : context_.settings) {
       if (setting.name == "server") context_.server_given = setting.origin != "default";
+      if (setting.origin == "--output" && !field_.empty() && output_ == "csv") {
+        return FailUsage("--field reads JSON, not CSV\n  try: without --output\n");
+      }
       if (setting.name != "output" || Supports(row, context_.output)) continue;
       if (setting.origin == "--output") {
         return FailUsage(absl::StrCat("phrenic ", PathOf(*command), " has no output as ", output_,
@@ -115,12 +121,20 @@ class CommandLine {
       context_.output = context_.output == Output::kJsonl ? Output::kJson : Output::kTable;
     }
     if (const absl::Status good = CheckConnection(context_); !good.ok()) return Fail(good);
-    return chosen_(context_);
+    return field_.empty() ? chosen_(context_) : PrintChosenField();
+  }
+
+  int PrintChosenField() {
+    int code = kOk;
+    const auto command = [&] { code = chosen_(context_); };
+    const absl::Status printed = PrintField(std::cout, field_, context_.output == Output::kJsonl, command);
+    return printed.ok() ? code : FailUsage(absl::StrCat(printed.message(), "\n"));
   }
 
   const CommandTable commands_;
   Context context_;
   std::string output_ = "table";
+  std::string field_;  // path of the value to print; empty: all
   CommandFunction chosen_;
   CLI::App app_{"", "phrenic"};
 };
