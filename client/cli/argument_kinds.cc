@@ -24,6 +24,7 @@ struct KindRow {
 constexpr KindRow kKindRows[] = {
     {"--output", Kind::kChoice, "FORMAT", "table json jsonl csv"},
     {"--field", Kind::kOther, "PATH", ""},
+    {"--grid", Kind::kFile, "FILE", ""},
     {"--server", Kind::kOther, "HOST:PORT", ""},
     {"--viewer", Kind::kOther, "URL", ""},
     {"--tls-ca", Kind::kFile, "FILE", ""},

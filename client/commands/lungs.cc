@@ -53,13 +53,13 @@ constexpr std::pair<physiology::LungRegion, const char*> kRegions[] = {
 absl::Status CheckField(const LungsOptions& options) {
   if (options.field.empty()) return absl::OkStatus();
   if (options.presets.size() > 1) {
-    return absl::InvalidArgumentError("--field holds one breath: give one --preset with it");
+    return absl::InvalidArgumentError("--grid holds one breath: give one --preset with it");
   }
   for (const char* ending : {".vti", ".nii", ".nii.gz"}) {
     if (absl::EndsWith(options.field, ending)) return absl::OkStatus();
   }
   return absl::InvalidArgumentError(
-      absl::StrCat("--field ", options.field, ": the formats are .vti, .nii and .nii.gz"));
+      absl::StrCat("--grid ", options.field, ": the formats are .vti, .nii and .nii.gz"));
 }
 
 absl::StatusOr<std::shared_ptr<const Model>> CompileLungs(const Context& context, const LungsOptions& options) {
@@ -216,7 +216,7 @@ CommandFunction SetUpLungs(CLI::App& command) {
       .add_option("--preset", options->presets, "a preset of the scene; may be repeated (the scene's own parameters)")
       ->allow_extra_args(false);
   AddParameters(command, options->settings);
-  command.add_option("--field", options->field,
+  command.add_option("--grid", options->field,
                      "write displacement [mm, LPS] and ventilation at the peak of the breath to this file: .vti, or "
                      ".nii and .nii.gz (displacement alone, as ITK and ANTs read it)");
   command.add_option("--spacing", options->spacing_mm, "distance of the field's points [mm]")

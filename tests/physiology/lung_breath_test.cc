@@ -116,7 +116,7 @@ TEST_F(LungBreath, IsReadByVtkAndNibabelAlike) {
   if (!Runs(python + "-c 'import nibabel'")) GTEST_SKIP() << "nibabel is not installed (python3-nibabel)";
   const std::string vti = testing::TempDir() + "phrenic_lungs.vti", nii = testing::TempDir() + "phrenic_lungs.nii.gz";
   const std::string lungs =
-      PHRENIC_BINARY_DIR "/phrenic lungs thorax --resolution 20 --preset quiet --spacing 12 --field ";
+      PHRENIC_BINARY_DIR "/phrenic lungs thorax --resolution 20 --preset quiet --spacing 12 --grid ";
   ASSERT_TRUE(Runs(lungs + vti));
   ASSERT_TRUE(Runs(lungs + nii));
   EXPECT_EQ(
