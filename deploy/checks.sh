@@ -72,7 +72,7 @@ run_stages() {
   mkdir -p "$results"
   for name in "$@"; do
     say "Stage $name ($(($# - ${#left[@]} + 1)) of $#): $(about "$name"). About $(time_left "${left[@]}") left."
-    if [[ $name == tests && " ${left[*]} " == *" tidy "* ]]; then begin_beside tidy warnings; fi
+    if [[ $name =~ ^(tests|e2e)$ && -z $beside ]]; then begin_beside "${left[@]}"; fi
     run_stage "$name"
     left=("${left[@]:1}")
   done
@@ -96,16 +96,29 @@ note_time() {
   summary+=("$(printf '%-12s %-7s %5d s' "$1" "$2" "$3")")
 }
 
-# --- beside: checks that are all computation run at the lowest priority while tests wait for clocks and browsers ---
+# --- beside: compilation runs at the lowest priority while tests wait for clocks and browsers ---
 beside=
-# begin_beside NAME... starts check_NAME of each, one after the other.
+# The checks of a stage that compile and run nothing.
+compiled_by() {
+  case $1 in
+    asan) echo asan_build ;;
+    tsan) echo tsan_build ;;
+    tidy) printf '%s\n' tidy warnings ;;
+  esac
+}
+
+# begin_beside STAGE... starts what the stages compile, one after the other.
 begin_beside() {
+  local -a names
+  local stage name status
+  mapfile -t names < <(for stage in "$@"; do compiled_by "$stage"; done)
+  [[ ${#names[@]} -gt 0 ]] || return 0
+  for name in "${names[@]}"; do rm -f "$results/$name.status"; done
   set -m # a process group of its own, which finish can end
   (
     trap - EXIT
     renice -n 19 -p "$BASHPID" >/dev/null
-    for name in "$@"; do
-      rm -f "$results/$name.status"
+    for name in "${names[@]}"; do
       status=0
       "check_$name" >"$results/$name.log" 2>&1 || status=$?
       echo "$status" >"$results/$name.status"
@@ -270,8 +283,8 @@ stage_laws() {
 }
 
 # --- C++: sanitizers ---
-# sanitized FOLDER SANITIZERS TARGET... builds the targets with the sanitizers. Optimised are the libraries that compute
-# (server/CMakeLists.txt); tests and what answers calls compile in a third of the time without.
+# sanitized FOLDER SANITIZERS TARGET... builds the targets with the sanitizers. What computes is optimised
+# (server/CMakeLists.txt, tests/CMakeLists.txt); what answers calls compiles in a third of the time without.
 sanitized() {
   local folder=$1 sanitizers=$2
   shift 2
@@ -294,10 +307,14 @@ programs() {
   count "$good" "$bad"
 }
 
+check_asan_build() {
+  sanitized "$root/build/asan" address,undefined tests
+}
+
 # Campaigns run on a Slurm of this machine alone if it can be started; if not, their test says so.
 stage_asan() {
   local folder=$root/build/asan slurm=$root/build/slurm
-  check sanitized "$folder" address,undefined tests
+  check beside asan_build
   if [[ $(id -u) == 0 ]] && "$root/tests/client/slurm/start" "$slurm" >/dev/null; then
     export SLURM_CONF=$slurm/slurm.conf
   fi
@@ -305,10 +322,14 @@ stage_asan() {
   if [[ -n ${SLURM_CONF:-} ]]; then "$root/tests/client/slurm/stop" "$slurm"; fi
 }
 
+check_tsan_build() {
+  sanitized "$root/build/tsan" thread tsan_test stream_test session_test
+}
+
 # gRPC's library is not built for ThreadSanitizer, so only tests of folders below service/ run under it.
 stage_tsan() {
   local folder=$root/build/tsan options=ignore_noninstrumented_modules=1:halt_on_error=1
-  check sanitized "$folder" thread tsan_test stream_test session_test
+  check beside tsan_build
   TSAN_OPTIONS=$options programs "$folder" -R '^(tsan|stream|session)$'
 }
 

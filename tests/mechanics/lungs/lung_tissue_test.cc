@@ -53,6 +53,9 @@ TEST(LungTissue, FollowsARigidMotion) {
 
 // A ball whose surroundings widen by g: E a/(1 - 2 nu) = k (g - a R).
 TEST(LungTissue, ExpandsUniformlyInAWideningBall) {
+#ifdef PHRENIC_SANITIZED
+  GTEST_SKIP() << "the Release build runs it; the tests below factorise smaller lungs";
+#endif
   const double radius = 0.08, g = 0.004;
   const Mesh ball = EllipsoidSurface({0, 0, 0}, Eigen::Vector3d::Constant(radius), 32, false);
   for (const double poisson : {0.1, 0.3, 0.45}) {
@@ -107,6 +110,9 @@ TEST(LungTissue, TakesTheLeastEnergy) {
 }
 
 TEST(LungTissue, HardlyChangesWithSmallerBricks) {
+#ifdef PHRENIC_SANITIZED
+  GTEST_SKIP() << "the Release build runs it; the tests below factorise smaller lungs";
+#endif
   const LungTissue coarse = Tissue(LungShape()), fine = Tissue(LungShape(), {.edge = 0.01});
   const Points of_coarse = coarse.Solve(Breath(coarse)), of_fine = fine.Solve(Breath(fine));
   double largest = 0, sum = 0;
