@@ -49,9 +49,9 @@ TEST(Bending, OfASheetRolledOnACylinderHasTheEnergyOfItsFlexuralRigidity) {
 // largest deflection.
 double ErrorOfPatch(double poissons_ratio, const std::function<double(double x, double y)>& given,
                     const std::function<bool(const SheetMesh&, int i, int j)>& held) {
-  const SheetMesh sheet({1, 9}, {0.6, 6}, 0.2);
+  const SheetMesh sheet({1, 12}, {0.6, 6}, 0.2);
   const auto model = CompileMesh(sheet.mesh, Plate(poissons_ratio));
-  constexpr double kSmall = 1e-4;  // so that linear theory holds
+  constexpr double kSmall = 1e-5;  // so that linear theory holds
   Points exact = model->rest, start = model->rest;
   std::vector<bool> kept(static_cast<size_t>(exact.cols()), false);
   sheet.ForEach([&](int i, int j) {
@@ -69,11 +69,11 @@ double ErrorOfPatch(double poissons_ratio, const std::function<double(double x, 
 TEST(Bending, OfAStripHasAnticlasticCurvature) {
   for (const double nu : {0.0, 0.3, 0.5}) {
     const auto saddle = [nu](double x, double y) { return x * x - nu * y * y; };
-    const auto ends = [](const SheetMesh& sheet, int i, int) { return i < 2 || i > sheet.u.cells - 2; };
+    const auto ends = [](const SheetMesh& sheet, int i, int) { return i < 4 || i > sheet.u.cells - 4; };
     EXPECT_LT(ErrorOfPatch(nu, saddle, ends), 1e-6) << "nu = " << nu;
     const auto cylinder = [](double x, double) { return x * x; };
     if (nu > 0) {
-      EXPECT_GT(ErrorOfPatch(nu, cylinder, ends), 0.01);
+      EXPECT_GT(ErrorOfPatch(nu, cylinder, ends), 1e-3);
     }
   }
 }

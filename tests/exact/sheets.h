@@ -35,11 +35,15 @@ struct SheetMesh {
   SheetMesh(const SheetAxis& along_x, const SheetAxis& along_y, double disorder) : u(along_x), v(along_y) {
     Place(disorder);
     std::mt19937 random(11);
+    std::vector<bool> rising(static_cast<size_t>(u.cells * v.cells));
+    for (size_t cell = 0; cell < rising.size(); ++cell) rising[cell] = disorder > 0 && random() % 2 == 0;
     std::vector<int> corners;
     for (int j = -v.before; j < v.cells + v.after; ++j) {
       for (int i = -u.before; i < u.cells + u.after; ++i) {
         const int a = At(i, j), b = At(i + 1, j), c = At(i + 1, j + 1), d = At(i, j + 1);
-        if (disorder > 0 && random() % 2 == 0) {
+        const int column = i < 0 ? -1 - i : i < u.cells ? i : 2 * u.cells - 1 - i;
+        const int row = j < 0 ? -1 - j : j < v.cells ? j : 2 * v.cells - 1 - j;
+        if (rising[row * u.cells + column] != ((column != i) != (row != j))) {
           corners.insert(corners.end(), {a, b, c, a, c, d});
         } else {
           corners.insert(corners.end(), {a, b, d, b, c, d});
