@@ -19,7 +19,7 @@ double EnergyOf(const Model& model, const State& state) {
 // E h^3 / 12 = 1 N m: the flexural rigidity is 1/(1 - nu^2).
 std::string Plate(double poissons_ratio, const std::string& more = "") {
   return absl::StrFormat(
-      "} forces { bending { bodies: 'sheet' youngs_modulus: 12e3 thickness: 0.1 poissons_ratio: %g %s } }",
+      "} forces { bending { bodies: 'body' youngs_modulus: 12e3 thickness: 0.1 poissons_ratio: %g %s } }",
       poissons_ratio, more);
 }
 

@@ -16,7 +16,7 @@ constexpr double kDeflection = 1e-5;  // about the largest [m], so that linear t
 // D = 1 N m.
 std::string UnitPlate(double poissons_ratio) {
   return absl::StrFormat(
-      "fixed_regions: 'fixed' } forces { bending { bodies: 'sheet' youngs_modulus: %.17g thickness: 0.1 "
+      "fixed_regions: 'fixed' } forces { bending { bodies: 'body' youngs_modulus: %.17g thickness: 0.1 "
       "poissons_ratio: %g } }",
       12e3 * (1 - poissons_ratio * poissons_ratio), poissons_ratio);
 }

@@ -92,11 +92,11 @@ struct SheetMesh {
   }
 };
 
-// Compiles a scene with one deformable body, "sheet", of this mesh. `text` has its other fields and elements:
-// "fixed_regions: 'clamp' } forces { bending { bodies: 'sheet' } }".
+// Compiles a scene with one deformable body, "body", of this mesh. `text` has its other fields and elements:
+// "fixed_regions: 'clamp' } forces { bending { bodies: 'body' } }".
 inline std::shared_ptr<const Model> CompileMesh(const Mesh& mesh, const std::string& text) {
   const auto scene = schema::ParseScene(
-      "test", "name: 'exact' bodies { name: 'sheet' role: ROLE_DEFORMABLE file { path: 'sheet.msh' } " + text);
+      "test", "name: 'exact' bodies { name: 'body' role: ROLE_DEFORMABLE file { path: 'body.msh' } " + text);
   EXPECT_TRUE(scene.ok()) << scene.status();
   if (!scene.ok()) return nullptr;
   const auto model = Compile(*scene, [&mesh](const v1::Body&) { return mesh; });
@@ -126,13 +126,17 @@ inline std::vector<double> OrdersOf(const std::vector<double>& errors) {
   return orders;
 }
 
-// Prints relative errors at three or more meshes and their orders, and records them in GoogleTest's results.
-inline void ReportErrors(const std::string& what, const std::vector<double>& errors) {
+// Prints relative errors at meshes that halve, and orders, and records them in GoogleTest's results.
+inline void ReportErrors(const std::string& what, const std::vector<double>& errors,
+                         const std::vector<double>& orders) {
   std::string text;
   for (const double error : errors) text += absl::StrFormat(" %+.3f %%", 100 * error);
-  for (const double order : OrdersOf(errors)) text += absl::StrFormat(", order %.2f", order);
+  for (const double order : orders) text += absl::StrFormat(", order %.2f", order);
   std::printf("%s:%s\n", what.c_str(), text.c_str());
   testing::Test::RecordProperty(what, text);
+}
+inline void ReportErrors(const std::string& what, const std::vector<double>& errors) {
+  ReportErrors(what, errors, OrdersOf(errors));
 }
 
 }  // namespace phrenic

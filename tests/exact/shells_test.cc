@@ -51,8 +51,8 @@ struct PinchedCylinder {
   double Deflection() const {
     const auto model = CompileMesh(
         sheet.mesh,
-        "} forces { membrane { bodies: 'sheet' region: 'inside' youngs_modulus: 3e6 poissons_ratio: 0.3 thickness: 3 } "
-        "} forces { bending { bodies: 'sheet' region: 'inside' youngs_modulus: 3e6 poissons_ratio: 0.3 thickness: 3 } "
+        "} forces { membrane { bodies: 'body' region: 'inside' youngs_modulus: 3e6 poissons_ratio: 0.3 thickness: 3 } "
+        "} forces { bending { bodies: 'body' region: 'inside' youngs_modulus: 3e6 poissons_ratio: 0.3 thickness: 3 } "
         "}");
     Points load = Points::Zero(3, model->rest.cols());
     const int top = sheet.At(0, 0);
