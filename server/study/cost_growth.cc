@@ -30,7 +30,7 @@ std::vector<int> SheetSizes(int largest) {
 Timing MakeTiming(const Subject& subject, int steps) {
   const auto vertices = static_cast<double>(std::max<int64_t>(1, subject.model->report.simulated_vertices()));
   const int most = std::max(kMinSteps, static_cast<int>(kMaxTurn / vertices));
-  return {.subject = subject, .steps = std::min(steps, most), .step_s = {}, .part_s = {}, .problem = ""};
+  return {.subject = subject, .again = {}, .steps = std::min(steps, most), .step_s = {}, .part_s = {}, .problem = ""};
 }
 
 // True, and noted, if the series that began at `began` [s] is out of time before its member i. Each member takes about

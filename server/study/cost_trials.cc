@@ -117,6 +117,22 @@ absl::StatusOr<std::vector<TrialRun>> WarmUp(std::vector<Timing>& timings, const
   return runs;
 }
 
+// Makes the runs of the next trial: memory at other addresses, as the runs before are still there, and other models.
+absl::Status Renew(std::vector<Timing>& timings, std::vector<TrialRun>& runs) {
+  for (size_t i = 0; i < timings.size(); ++i) {
+    if (timings[i].again) {
+      auto subject = timings[i].again();
+      if (!subject.ok()) return subject.status();
+      timings[i].subject = *std::move(subject);
+    }
+    const Model& model = *timings[i].subject.model;
+    const State start = model.InitialState();
+    runs[i] = TrialRun{start, start, model.MakeWorkspace(), runs[i].clock};
+    TakeSteps(timings[i], kWarmUp, runs[i]);
+  }
+  return absl::OkStatus();
+}
+
 // Returns the median ratio over the parts [from, to).
 double MedianRatioOf(const Timing& a, const Timing& b, size_t from, size_t to) {
   std::vector<double> ratios;
@@ -147,6 +163,9 @@ absl::Status TimeInterleaved(std::vector<Timing>& timings, int trials, double mo
       budget.Cut(absl::StrFormat("%s: %d of %d trials were made", what, trial, trials), spent * trials / trial);
       break;
     }
+    if (trial > 0) {
+      if (absl::Status status = Renew(timings, *runs); !status.ok()) return status;
+    }
     for (int round = 0; round < rounds; ++round) {
       const double done = (trial + static_cast<double>(round) / rounds) / trials;
       for (size_t i = 0; i < timings.size(); ++i) {
@@ -155,9 +174,8 @@ absl::Status TimeInterleaved(std::vector<Timing>& timings, int trials, double mo
       }
     }
     for (size_t i = 0; i < timings.size(); ++i) {
-      TrialRun& run = (*runs)[i];
+      const TrialRun& run = (*runs)[i];
       timings[i].step_s.push_back(run.spent / run.of_steps);
-      run.spent = run.of_steps = 0;
     }
   }
   return absl::OkStatus();

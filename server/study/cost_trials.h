@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_STUDY_COST_TRIALS_H_
 #define PHRENIC_SERVER_STUDY_COST_TRIALS_H_
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,13 +15,17 @@ namespace phrenic::study {
 // A subject and its measured times.
 struct Timing {
   Subject subject;
+  // Compiles the subject again; empty: all trials run the same model. Where a step takes less than a microsecond, its
+  // time depends on the addresses of the model: trials then differ as repeated studies do.
+  std::function<absl::StatusOr<Subject>()> again;
   int steps = 0;               // least number of steps per trial
   std::vector<double> step_s;  // mean CPU time per step of each trial [s]
   std::vector<double> part_s;  // and of each part of each trial [s]
   std::string problem;         // why a run was restarted; empty if none was
 };
 
-// Runs `trials` trials of each subject from rest, in round-robin order over short parts of a trial. The steps of a
+// Runs `trials` trials of each subject from rest, in round-robin order over short parts of a trial; each trial has a
+// state and workspace of its own. The steps of a
 // trial are repeated until the fastest subject takes at least 5 ms. Takes fewer steps, then fewer trials, but at least
 // one, if they do not fit into `most_seconds` of wall time, and notes it as `what`. CANCELLED if `progress` returns
 // false. Uses one thread.

@@ -32,7 +32,7 @@ struct Variants {
   size_t Add(Variant variant, const Subject& subject, int steps) {
     const size_t index = variants.size();
     variants.push_back(std::move(variant));
-    timings.push_back({.subject = subject, .steps = steps, .step_s = {}, .part_s = {}, .problem = ""});
+    timings.push_back({.subject = subject, .again = {}, .steps = steps, .step_s = {}, .part_s = {}, .problem = ""});
     return index;
   }
 };

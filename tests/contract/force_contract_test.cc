@@ -46,6 +46,7 @@ const ForceCase kForces[] = {
     {"cross_layer", "cross_layer { bodies: 'block' distance: 1.5 stiffness: 20 }", true},
     {"cross_layer_bodies", "cross_layer { bodies: 'sheet' other_bodies: 'block' distance: 4 stiffness: 20 }", true},
     {"bending", "bending { bodies: 'sheet' youngs_modulus: 100 thickness: 0.3 }", true},
+    {"bending_region", "bending { bodies: 'sheet' youngs_modulus: 100 thickness: 0.3 region: 'front' }", true},
     {"fibres",
      "fibres { bodies: 'sheet' from_region: 'left' to_region: 'right' modulus_along: 900 modulus_across: 200 "
      "thickness: "

@@ -339,8 +339,8 @@ TEST(CostTrials, MediansAndSpreads) {
   EXPECT_EQ(MiddleMean({100, 2, -7, 4}), 3);
   EXPECT_EQ(Spread({2}), 0);
   EXPECT_EQ(Spread({1, 2, 3}), 1);
-  EXPECT_EQ(MedianRatio({.subject = {}, .steps = 1, .step_s = {}, .part_s = {2, 8, 9}, .problem = ""},
-                        {.subject = {}, .steps = 1, .step_s = {}, .part_s = {1, 2, 9}, .problem = ""}),
+  EXPECT_EQ(MedianRatio({.subject = {}, .again = {}, .steps = 1, .step_s = {}, .part_s = {2, 8, 9}, .problem = ""},
+                        {.subject = {}, .again = {}, .steps = 1, .step_s = {}, .part_s = {1, 2, 9}, .problem = ""}),
             2);
 }
 

@@ -118,7 +118,7 @@ std::int64_t ElementsOf(const v1::Force& scene, const NamedSizes& sizes) {
     case v1::Force::kThoraxPressures:
       return SaturatingProduct(3, sizes.Of(scene.thorax_pressures().body()).size.triangles);
     case v1::Force::kBending:
-      return sizes.Of(scene.bending().bodies()).size.edges;
+      return SaturatingProduct(3, sizes.Of(scene.bending().bodies()).size.triangles);  // of some 500 bytes each
     case v1::Force::kCrossLayer:
       return CrossLayerPairs(scene.cross_layer(), sizes);
     case v1::Force::kTargetSpring:
