@@ -2,9 +2,15 @@
 // and a cluster over TLS.
 #include "tests/service/raw_http2.h"
 // After Boost, which needs <utility> first.
+#include <grpcpp/generic/async_generic_service.h>
+#include <grpcpp/server_builder.h>
+
 #include <boost/asio/ip/tcp.hpp>
 #include <filesystem>
+#include <thread>
 
+#include "absl/synchronization/notification.h"
+#include "server/cluster/cluster.h"
 #include "server/service/net/metadata.h"
 #include "tests/cluster/redis_server.h"
 #include "tests/service/certificates.h"
@@ -101,6 +107,61 @@ class ClusterEdge : public GrpcEdge {
 };
 
 TEST_F(ClusterEdge, NoHeaderStopsAServerThatPassesCallsOn) { Attack(); }
+
+// A server of the cluster that takes calls and answers none.
+class HangingPeer : public grpc::CallbackGenericService {
+ public:
+  explicit HangingPeer(const std::string& address) {
+    grpc::ServerBuilder builder;
+    builder.AddListeningPort(address, grpc::InsecureServerCredentials());
+    builder.RegisterCallbackGenericService(this);
+    server_ = builder.BuildAndStart();
+  }
+  ~HangingPeer() override { server_->Shutdown(std::chrono::system_clock::now()); }
+  grpc::ServerGenericBidiReactor* CreateReactor(grpc::GenericCallbackServerContext*) override {
+    called_.Notify();
+    return new Call(cancelled_);
+  }
+  // True if a call arrives, or its caller leaves, within the time.
+  bool AwaitCall() const { return called_.WaitForNotificationWithTimeout(absl::Seconds(20)); }
+  bool AwaitCancel(absl::Duration time) const { return cancelled_.WaitForNotificationWithTimeout(time); }
+
+ private:
+  class Call final : public grpc::ServerGenericBidiReactor {
+   public:
+    explicit Call(absl::Notification& cancelled) : cancelled_(cancelled) {}
+    void OnCancel() override {
+      cancelled_.Notify();
+      Finish(grpc::Status::CANCELLED);
+    }
+    void OnDone() override { delete this; }
+
+   private:
+    absl::Notification& cancelled_;
+  };
+  absl::Notification called_, cancelled_;
+  std::unique_ptr<grpc::Server> server_;
+};
+
+TEST_F(ClusterEdge, AListIsNoLongerAskedForWhenItsCallerHasGone) {
+  const std::string address = absl::StrCat("127.0.0.1:", FreePorts());
+  HangingPeer peer(address);
+  auto joined = cluster::Cluster::Join({.redis = redis_->url(), .advertise = address});
+  ASSERT_TRUE(joined.ok()) << joined.status();
+  (*joined)->Start({.lost = [](const std::string&) {},
+                    .take_over = [](const store::SavedSession&, std::int64_t) { return absl::OkStatus(); },
+                    .copy_whole = [](const std::vector<std::string>&) {}});
+  (*joined)->StartTakeovers();
+  absl::SleepFor(absl::Seconds(2));  // the server learns of the other one when it renews its leases, every 0.7 s
+  grpc::ClientContext context;
+  v1::ListSessionsResponse response;
+  std::thread caller([&] { sessions_->ListSessions(&context, v1::ListSessionsRequest(), &response); });
+  EXPECT_TRUE(peer.AwaitCall());
+  context.TryCancel();
+  EXPECT_TRUE(peer.AwaitCancel(absl::Seconds(1))) << "it would end after 2 s by itself";
+  caller.join();
+  (*joined)->Leave();
+}
 
 // Two servers and Redis, which talk to each other over TLS only.
 class ClusterOverTls : public testing::Test {
