@@ -119,9 +119,7 @@ absl::StatusOr<FairShare::Hold> FrameService::TakeSeats(const access::Caller& ca
 
 absl::Status FrameService::WatchFrames(ServedCall& call) {
   v1::WatchFramesRequest request;
-  if (!Parse(call.request(), request)) {
-    return absl::InvalidArgumentError("the message is not a phrenic.v1.WatchFramesRequest");
-  }
+  if (absl::Status parsed = Parse(call.request(), request); !parsed.ok()) return parsed;
   const auto caller = guard_.Admit(call.context(), request);
   if (!caller.ok()) return caller.status();
   auto session = table_.Find(request.session_id());
