@@ -36,9 +36,9 @@ class FrameService final {
   grpc::Status GetBasis(grpc::CallbackServerContext* context, const v1::GetBasisRequest* request,
                         v1::GetBasisResponse* response);
   // On Lane::kSession. Waits for a copy of the state between two steps and evaluates the forces [N] on the lane's
-  // thread.
-  grpc::Status GetForces(grpc::CallbackServerContext* context, const v1::GetForcesRequest* request,
-                         v1::GetForcesResponse* response);
+  // thread. RESOURCE_EXHAUSTED, before that, if the caller has too many large replies: the forces of a state count as
+  // two of its arrays.
+  grpc::Status GetForces(ServedCall& call, const v1::GetForcesRequest& request, v1::GetForcesResponse* response);
 
  private:
   // Starts the stream, which then goes on without a thread. Returns an error if it cannot start. On Lane::kQuick until

@@ -201,7 +201,8 @@ TEST_F(Calls, WatchesOfOneAccountBlockNoOther) {
 // The vertices of this block are 0.4 MB of state, so that each reply has a place of its own and none fits the windows.
 TEST_F(Calls, AStateThatCannotBeSentIsNeitherReadNorStepped) {
   Start();
-  const auto stub = v1::SessionService::NewStub(server_->NewChannel());
+  const auto channel = server_->NewChannel();  // without accounts, a caller of this machine is a connection
+  const auto stub = v1::SessionService::NewStub(channel);
   v1::CreateSessionRequest create;
   create.set_session_id("block");
   ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(
@@ -214,7 +215,7 @@ TEST_F(Calls, AStateThatCannotBeSentIsNeitherReadNorStepped) {
   get.set_session_id("block");
   get.add_read(v1::STATE_PART_POSITIONS);
   get.add_read(v1::STATE_PART_VELOCITIES);
-  OpenStreams unread(server_->NewChannel());
+  OpenStreams unread(channel);
   for (int i = 0; i < 60; ++i) unread.Open("/phrenic.v1.SessionService/GetState", get.SerializeAsString());
   v1::StepSessionRequest step;
   step.set_session_id("block");

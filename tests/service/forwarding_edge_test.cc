@@ -5,11 +5,12 @@
 #include <grpcpp/generic/async_generic_service.h>
 #include <grpcpp/server_builder.h>
 
+#include <atomic>
 #include <boost/asio/ip/tcp.hpp>
 #include <filesystem>
 #include <thread>
 
-#include "absl/synchronization/notification.h"
+#include "absl/time/clock.h"
 #include "server/cluster/cluster.h"
 #include "server/service/net/metadata.h"
 #include "tests/cluster/redis_server.h"
@@ -119,27 +120,31 @@ class HangingPeer : public grpc::CallbackGenericService {
   }
   ~HangingPeer() override { server_->Shutdown(std::chrono::system_clock::now()); }
   grpc::ServerGenericBidiReactor* CreateReactor(grpc::GenericCallbackServerContext*) override {
-    called_.Notify();
+    ++calls_;
     return new Call(cancelled_);
   }
-  // True if a call arrives, or its caller leaves, within the time.
-  bool AwaitCall() const { return called_.WaitForNotificationWithTimeout(absl::Seconds(20)); }
-  bool AwaitCancel(absl::Duration time) const { return cancelled_.WaitForNotificationWithTimeout(time); }
+  int calls() const { return calls_; }
+  // True if the callers of all calls have left within the time.
+  bool AwaitCancel(absl::Duration time) const {
+    const absl::Time end = absl::Now() + time;
+    while (cancelled_ < calls_ && absl::Now() < end) absl::SleepFor(absl::Milliseconds(5));
+    return cancelled_ == calls_;
+  }
 
  private:
   class Call final : public grpc::ServerGenericBidiReactor {
    public:
-    explicit Call(absl::Notification& cancelled) : cancelled_(cancelled) {}
+    explicit Call(std::atomic<int>& cancelled) : cancelled_(cancelled) {}
     void OnCancel() override {
-      cancelled_.Notify();
+      ++cancelled_;
       Finish(grpc::Status::CANCELLED);
     }
     void OnDone() override { delete this; }
 
    private:
-    absl::Notification& cancelled_;
+    std::atomic<int>& cancelled_;
   };
-  absl::Notification called_, cancelled_;
+  std::atomic<int> calls_ = 0, cancelled_ = 0;
   std::unique_ptr<grpc::Server> server_;
 };
 
@@ -152,14 +157,23 @@ TEST_F(ClusterEdge, AListIsNoLongerAskedForWhenItsCallerHasGone) {
                     .take_over = [](const store::SavedSession&, std::int64_t) { return absl::OkStatus(); },
                     .copy_whole = [](const std::vector<std::string>&) {}});
   (*joined)->StartTakeovers();
-  absl::SleepFor(absl::Seconds(2));  // the server learns of the other one when it renews its leases, every 0.7 s
-  grpc::ClientContext context;
   v1::ListSessionsResponse response;
+  const absl::Time last = absl::Now() + absl::Seconds(30);
+  while (peer.calls() == 0 && absl::Now() < last) {  // until the server knows the other one
+    grpc::ClientContext brief;
+    brief.set_deadline(std::chrono::system_clock::now() + std::chrono::milliseconds(300));
+    sessions_->ListSessions(&brief, v1::ListSessionsRequest(), &response);
+  }
+  const int before = peer.calls();
+  ASSERT_GT(before, 0);
+  EXPECT_TRUE(peer.AwaitCancel(absl::Seconds(1))) << "it has the deadline of its caller";
+  grpc::ClientContext context;
   std::thread caller([&] { sessions_->ListSessions(&context, v1::ListSessionsRequest(), &response); });
-  EXPECT_TRUE(peer.AwaitCall());
+  while (peer.calls() == before && absl::Now() < last) absl::SleepFor(absl::Milliseconds(5));
   context.TryCancel();
   EXPECT_TRUE(peer.AwaitCancel(absl::Seconds(1))) << "it would end after 2 s by itself";
   caller.join();
+  EXPECT_EQ(peer.calls(), before + 1);
   (*joined)->Leave();
 }
 

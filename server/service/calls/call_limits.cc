@@ -14,7 +14,7 @@ constexpr int kUnreadOfCaller = 4;
 constexpr int kRequests = 128, kRequestsOfCaller = 32;  // places of large requests
 constexpr int kPlacesOfLargest = 4;
 constexpr std::size_t kLargeRequest = 64 << 10;       // [bytes]
-constexpr int kReplies = 256, kRepliesOfCaller = 64;  // that are large, and unread
+constexpr int kReplies = 128, kRepliesOfCaller = 64;  // that are large, and unread
 
 struct Threads {
   const char* calls;

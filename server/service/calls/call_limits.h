@@ -49,7 +49,7 @@ class CallLimits {
   // Returns the places of a request of so many bytes. None up to 64 KiB.
   std::size_t PlacesOf(std::size_t request) const;
   // Large replies that their clients have not read. Large means more than 64 KiB (ServedCall::Reply); each has a place
-  // for every 4 MiB. 256 places, 64 of one caller; a reply does not wait for a place.
+  // for every 4 MiB. 128 places, 64 of one caller; a reply does not wait for a place.
   FairShare& replies() { return replies_; }
   // A call holds its place while its handler runs.
   FairShare& lane(Lane lane) { return lanes_[static_cast<std::size_t>(lane)]; }

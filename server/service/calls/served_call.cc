@@ -41,6 +41,10 @@ void ServedCall::Run() {
 }
 
 bool ServedCall::Write(const grpc::ByteBuffer& message) {
+  if (absl::Status reserved = Reserve(message.Length()); !reserved.ok()) {
+    FinishOnce(ToGrpc(reserved));
+    return false;
+  }
   {
     absl::MutexLock lock(&mutex_);
     if (context().IsCancelled()) return false;

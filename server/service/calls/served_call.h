@@ -59,8 +59,8 @@ class ServedCall final : public IncomingCall {
   using IncomingCall::request;
 
   // For handlers. Writes a message and waits until the client's flow control accepts it. False if the client is gone,
-  // or has not read for a minute. After that minute it cancels the call. Requires: Continue was not called, and no
-  // other thread writes.
+  // has not read for a minute, or leaves too many large messages unread (Reserve). After that minute it cancels the
+  // call. Requires: Continue was not called, and no other thread writes.
   bool Write(const grpc::ByteBuffer& message) ABSL_LOCKS_EXCLUDED(mutex_);
   // Takes the places in CallLimits::replies that a reply of so many bytes needs, so that a handler makes a large reply
   // only if it may be sent. RESOURCE_EXHAUSTED if the client leaves too many replies unread. The places are held until
