@@ -92,6 +92,14 @@ TEST(Parse, ManyEmptyEntriesAreRefused) {
   EXPECT_TRUE(absl::IsInvalidArgument(Parse(BytesOf("\xff\xff"), read)));
 }
 
+TEST(Parse, UnknownFieldsOfALargeMessageAreDropped) {
+  v1::Scene scene = Mesh(10'000, 10'000), read;
+  const std::string known = scene.SerializeAsString();
+  scene.GetReflection()->MutableUnknownFields(&scene)->AddLengthDelimited(1000, std::string(1 << 20, 'x'));
+  ASSERT_TRUE(Parse(Serialize(scene), read).ok());
+  EXPECT_EQ(read.SerializeAsString(), known);
+}
+
 class RequestSize : public ProcessFixture {
  protected:
   template <class Stub, class Request, class Response>

@@ -26,8 +26,11 @@ absl::Status Parse(const grpc::ByteBuffer& bytes, google::protobuf::Message& mes
   }
   grpc::ByteBuffer shared = bytes;  // shares the slices; the reader needs a non-const buffer
   grpc::ProtoBufferReader reader(&shared);
-  if (message.ParseFromZeroCopyStream(&reader)) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat("the message is not a ", message.GetTypeName()));
+  if (!message.ParseFromZeroCopyStream(&reader)) {
+    return absl::InvalidArgumentError(absl::StrCat("the message is not a ", message.GetTypeName()));
+  }
+  if (length > kShort) message.DiscardUnknownFields();  // a session would keep those of its scene
+  return absl::OkStatus();
 }
 
 }  // namespace phrenic::service

@@ -13,7 +13,7 @@
 
 namespace phrenic::service {
 
-// Parses a message without copying its bytes. Its previous content is gone in any case. Thread-safe. Errors:
+// Parses a message without copying its bytes. Drops what it held, and unknown fields above 64 KiB. Thread-safe. Errors:
 // INVALID_ARGUMENT if the bytes are not a `message`, which is then only partly filled; RESOURCE_EXHAUSTED, before
 // anything is built, if it would take more than four times its length and 16 MiB of memory (UnfoldedBytes).
 absl::Status Parse(const grpc::ByteBuffer& bytes, google::protobuf::Message& message);
