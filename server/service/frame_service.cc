@@ -111,8 +111,11 @@ grpc::Status FrameService::GetGeometry(grpc::CallbackServerContext* context, con
     if (absl::Status reserved = writer->Reserve(GeometryBytes(body.mesh)); !reserved.ok()) return ToGrpc(reserved);
   }
   for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body) {
-    if (!writer->Write(stream::MakeGeometry(model, session.publisher().layout(), body)))
-      break;  // the client disconnected
+    auto turn = TakeTurn(call->caller, *context, GeometryBytes(model.bodies[static_cast<std::size_t>(body)].mesh));
+    if (!turn.ok()) return ToGrpc(turn.status());
+    const v1::GetGeometryResponse geometry = stream::MakeGeometry(model, session.publisher().layout(), body);
+    turn->reset();
+    if (!writer->Write(geometry)) break;  // the client disconnected
   }
   return grpc::Status::OK;
 }
@@ -160,12 +163,22 @@ grpc::Status FrameService::GetBasis(grpc::CallbackServerContext* context, const 
   return grpc::Status::OK;
 }
 
+absl::StatusOr<FairShare::Hold> FrameService::TakeTurn(const access::Caller& caller,
+                                                       const grpc::ServerContextBase& context, std::size_t bytes) {
+  if (bytes <= kLargeRead) return FairShare::Hold();
+  auto turn = AwaitTurn(large_reads_, guard_.KeyOf(caller, context));
+  if (turn.ok() && context.IsCancelled()) return absl::CancelledError("the client has gone");
+  return turn;
+}
+
 grpc::Status FrameService::GetForces(ServedCall& call, const v1::GetForcesRequest& request,
                                      v1::GetForcesResponse* response) {
   const auto admitted = AdmitToSession(guard_, table_, call.context(), request);
   if (!admitted.ok()) return ToGrpc(admitted.status());
   const auto numbers = static_cast<std::size_t>(admitted->session->model().rest.size());
   if (absl::Status reserved = call.Reserve(2 * sizeof(double) * numbers); !reserved.ok()) return ToGrpc(reserved);
+  auto turn = TakeTurn(admitted->caller, call.context(), sizeof(double) * numbers);
+  if (!turn.ok()) return ToGrpc(turn.status());
   auto read = session::ReadForces(table_, request);
   if (!read.ok()) return ToGrpc(read.status());
   *response = *std::move(read);

@@ -209,9 +209,16 @@ grpc::Status SessionService::GetState(ServedCall& call, const v1::GetStateReques
   session::Session& session = *admitted->session;
   if (absl::Status good = stream::CheckParts(request.read()); !good.ok()) return ToGrpc(good);
   if (absl::Status reserved = call.Reserve(BytesOf(session, request.read())); !reserved.ok()) return ToGrpc(reserved);
+  const Model& model = session.model();
+  FairShare::Hold turn;
+  if (sizeof(double) * static_cast<std::size_t>(model.rest.size()) > kLargeRead) {
+    auto taken = AwaitTurn(large_reads_, guard_.KeyOf(admitted->caller, call.context()));
+    if (!taken.ok()) return ToGrpc(taken.status());
+    if (call.context().IsCancelled()) return grpc::Status::CANCELLED;
+    turn = *std::move(taken);
+  }
   const auto now = session.ReadState();
   if (!now.ok()) return ToGrpc(now.status());
-  const Model& model = session.model();
   response->set_state_hash(session::HashText(now->state()));
   *response->mutable_measures() = ReadMeasures(model, MakeEvalContext(model, now->parameters, now->state()));
   return ToGrpc(FillState(session, now->state(), request.read(), response));

@@ -6,6 +6,7 @@
 #include "server/service/calls/access_guard.h"
 #include "server/service/calls/call_table.h"
 #include "server/service/calls/page_tokens.h"
+#include "server/service/calls/turn.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {
@@ -80,6 +81,7 @@ class SessionService final {
   session::Table& table_;
   AccessGuard& guard_;
   const PageTokens& page_tokens_;
+  FairShare large_reads_{LargeReads()};  // of GetState
 };
 
 }  // namespace phrenic::service
