@@ -63,6 +63,12 @@ absl::StatusOr<stream::ViewerOptions> ReadOptions(const Model& model, const stre
       .watch_id = request.watch_id()};
 }
 
+// Returns the bytes of a body's arrays in GetGeometryResponse.
+std::size_t GeometryBytes(const Mesh& mesh) {
+  const Eigen::Index numbers = mesh.vertices.size() + mesh.triangles.size() + mesh.edges.size();
+  return sizeof(float) * static_cast<std::size_t>(numbers);
+}
+
 absl::Status Acknowledge(const session::Table& table, const v1::AckFramesRequest& request,
                          v1::AckFramesResponse& response) {
   const auto session = table.Find(request.session_id());
@@ -101,9 +107,15 @@ grpc::Status FrameService::GetGeometry(grpc::CallbackServerContext* context, con
   if (!call.ok()) return ToGrpc(call.status());
   session::Session& session = *call->session;
   const Model& model = session.model();
+  for (const BodyModel& body : model.bodies) {
+    if (absl::Status reserved = writer->Reserve(GeometryBytes(body.mesh)); !reserved.ok()) return ToGrpc(reserved);
+  }
   for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body) {
-    if (!writer->Write(stream::MakeGeometry(model, session.publisher().layout(), body)))
-      break;  // the client disconnected
+    auto turn = TakeTurn(call->caller, *context, GeometryBytes(model.bodies[static_cast<std::size_t>(body)].mesh));
+    if (!turn.ok()) return ToGrpc(turn.status());
+    const v1::GetGeometryResponse geometry = stream::MakeGeometry(model, session.publisher().layout(), body);
+    turn->reset();
+    if (!writer->Write(geometry)) break;  // the client disconnected
   }
   return grpc::Status::OK;
 }
@@ -119,9 +131,7 @@ absl::StatusOr<FairShare::Hold> FrameService::TakeSeats(const access::Caller& ca
 
 absl::Status FrameService::WatchFrames(ServedCall& call) {
   v1::WatchFramesRequest request;
-  if (!Parse(call.request(), request)) {
-    return absl::InvalidArgumentError("the message is not a phrenic.v1.WatchFramesRequest");
-  }
+  if (absl::Status parsed = Parse(call.request(), request); !parsed.ok()) return parsed;
   const auto caller = guard_.Admit(call.context(), request);
   if (!caller.ok()) return caller.status();
   auto session = table_.Find(request.session_id());
@@ -153,11 +163,23 @@ grpc::Status FrameService::GetBasis(grpc::CallbackServerContext* context, const 
   return grpc::Status::OK;
 }
 
-grpc::Status FrameService::GetForces(grpc::CallbackServerContext* context, const v1::GetForcesRequest* request,
+absl::StatusOr<FairShare::Hold> FrameService::TakeTurn(const access::Caller& caller,
+                                                       const grpc::ServerContextBase& context, std::size_t bytes) {
+  if (bytes <= kLargeRead) return FairShare::Hold();
+  auto turn = AwaitTurn(large_reads_, guard_.KeyOf(caller, context));
+  if (turn.ok() && context.IsCancelled()) return absl::CancelledError("the client has gone");
+  return turn;
+}
+
+grpc::Status FrameService::GetForces(ServedCall& call, const v1::GetForcesRequest& request,
                                      v1::GetForcesResponse* response) {
-  const auto caller = guard_.Admit(*context, *request);
-  if (!caller.ok()) return ToGrpc(caller.status());
-  auto read = session::ReadForces(table_, *request);
+  const auto admitted = AdmitToSession(guard_, table_, call.context(), request);
+  if (!admitted.ok()) return ToGrpc(admitted.status());
+  const auto numbers = static_cast<std::size_t>(admitted->session->model().rest.size());
+  if (absl::Status reserved = call.Reserve(2 * sizeof(double) * numbers); !reserved.ok()) return ToGrpc(reserved);
+  auto turn = TakeTurn(admitted->caller, call.context(), sizeof(double) * numbers);
+  if (!turn.ok()) return ToGrpc(turn.status());
+  auto read = session::ReadForces(table_, request);
   if (!read.ok()) return ToGrpc(read.status());
   *response = *std::move(read);
   return grpc::Status::OK;

@@ -9,6 +9,7 @@
 #include "server/service/calls/call_table.h"
 #include "server/service/calls/fair_share.h"
 #include "server/service/calls/metrics.h"
+#include "server/service/calls/turn.h"
 #include "server/session/limits.h"
 #include "server/session/table.h"
 
@@ -36,9 +37,9 @@ class FrameService final {
   grpc::Status GetBasis(grpc::CallbackServerContext* context, const v1::GetBasisRequest* request,
                         v1::GetBasisResponse* response);
   // On Lane::kSession. Waits for a copy of the state between two steps and evaluates the forces [N] on the lane's
-  // thread.
-  grpc::Status GetForces(grpc::CallbackServerContext* context, const v1::GetForcesRequest* request,
-                         v1::GetForcesResponse* response);
+  // thread. RESOURCE_EXHAUSTED, before that, if the caller has too many large replies: the forces of a state count as
+  // two of its arrays.
+  grpc::Status GetForces(ServedCall& call, const v1::GetForcesRequest& request, v1::GetForcesResponse* response);
 
  private:
   // Starts the stream, which then goes on without a thread. Returns an error if it cannot start. On Lane::kQuick until
@@ -50,11 +51,17 @@ class FrameService final {
   // RESOURCE_EXHAUSTED names the limit and its flag.
   absl::StatusOr<FairShare::Hold> TakeSeats(const access::Caller& caller, const std::string& session);
 
+  // Waits for the caller's turn if a read is as large as that [bytes] (AwaitTurn). CANCELLED if the client has gone
+  // meanwhile.
+  absl::StatusOr<FairShare::Hold> TakeTurn(const access::Caller& caller, const grpc::ServerContextBase& context,
+                                           std::size_t bytes);
+
   session::Table& table_;
   AccessGuard& guard_;
   Metrics& metrics_;
-  FairShare viewers_;  // of all sessions
-  FairShare seats_;    // of one caller in one session; the publisher limits all of a session
+  FairShare viewers_;                    // of all sessions
+  FairShare seats_;                      // of one caller in one session; the publisher limits all of a session
+  FairShare large_reads_{LargeReads()};  // of GetGeometry and GetForces
 };
 
 }  // namespace phrenic::service

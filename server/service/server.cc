@@ -130,9 +130,10 @@ struct Server::Parts {
         compare_service(table, options.limits, guard),
         server_service(std::filesystem::exists(options.web_root + "/index.html"), !options.data_dir.empty(),
                        options.tls.used(), guard),
-        call_limits(options.max_calls, RequestTime(options)),
+        call_limits(options.max_calls, RequestTime(options), static_cast<std::size_t>(options.max_message_bytes)),
         calls(guard, call_limits),
-        forwarding_limits(options.max_calls, RequestTime(options)) {
+        forwarding_limits(options.max_calls, RequestTime(options),
+                          static_cast<std::size_t>(options.max_message_bytes)) {
     AddCalls();
     table.set_account_names([this](const std::string& account) { return guard.AccountOf(account); });
   }

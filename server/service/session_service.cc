@@ -21,6 +21,11 @@ absl::Status FillSession(absl::StatusOr<v1::Session> session, Response* response
   return absl::OkStatus();
 }
 
+// Returns the bytes of the parts of the session's state.
+std::size_t BytesOf(session::Session& session, const stream::StateParts& parts) {
+  return stream::StateBytes(session.model(), session.publisher().layout(), parts);
+}
+
 // Sets the response's state, or returns why it cannot be read.
 template <class Response>
 absl::Status FillState(session::Session& session, const State& state, const stream::StateParts& parts,
@@ -177,18 +182,18 @@ grpc::Status SessionService::PauseSession(grpc::CallbackServerContext* context, 
   });
 }
 
-grpc::Status SessionService::StepSession(grpc::CallbackServerContext* context, const v1::StepSessionRequest* request,
+grpc::Status SessionService::StepSession(ServedCall& call, const v1::StepSessionRequest& request,
                                          v1::StepSessionResponse* response) {
-  return Change(*context, *request, response, [&](session::Session& session) {
-    if (absl::Status good = CheckRead(*request); !good.ok()) return good;
-    const auto tick = OptionalOf(request->has_expected_tick(), request->expected_tick());
-    const bool idempotent = !request->request_id().empty();  // a repeat expects the result
+  return Change(call.context(), request, response, [&](session::Session& session) {
+    if (absl::Status good = CheckRead(request); !good.ok()) return good;
+    if (absl::Status reserved = call.Reserve(BytesOf(session, request.read())); !reserved.ok()) return reserved;
+    const auto tick = OptionalOf(request.has_expected_tick(), request.expected_tick());
+    const bool idempotent = !request.request_id().empty();  // a repeat expects the result
     auto stepped = session.Step(
-        request->ticks(), tick, [&] { return !idempotent && context->IsCancelled(); }, request->control_token(),
-        !request->read().empty());
+        request.ticks(), tick, [&] { return !idempotent && call.context().IsCancelled(); }, request.control_token());
     if (!stepped.ok()) return stepped.status();
-    if (stepped->state.has_value()) {
-      absl::Status read = FillState(session, *stepped->state, request->read(), response);
+    if (!request.read().empty()) {
+      absl::Status read = FillState(session, stepped->frame->state, request.read(), response);
       if (!read.ok()) return read;
     }
     response->set_state_hash(std::move(stepped->state_hash));
@@ -197,17 +202,26 @@ grpc::Status SessionService::StepSession(grpc::CallbackServerContext* context, c
   });
 }
 
-grpc::Status SessionService::GetState(grpc::CallbackServerContext* context, const v1::GetStateRequest* request,
+grpc::Status SessionService::GetState(ServedCall& call, const v1::GetStateRequest& request,
                                       v1::GetStateResponse* response) {
-  const auto call = AdmitToSession(guard_, table_, *context, *request);
-  if (!call.ok()) return ToGrpc(call.status());
-  if (absl::Status good = stream::CheckParts(request->read()); !good.ok()) return ToGrpc(good);
-  const auto now = call->session->MakeFork();
+  const auto admitted = AdmitToSession(guard_, table_, call.context(), request);
+  if (!admitted.ok()) return ToGrpc(admitted.status());
+  session::Session& session = *admitted->session;
+  if (absl::Status good = stream::CheckParts(request.read()); !good.ok()) return ToGrpc(good);
+  if (absl::Status reserved = call.Reserve(BytesOf(session, request.read())); !reserved.ok()) return ToGrpc(reserved);
+  const Model& model = session.model();
+  FairShare::Hold turn;
+  if (sizeof(double) * static_cast<std::size_t>(model.rest.size()) > kLargeRead) {
+    auto taken = AwaitTurn(large_reads_, guard_.KeyOf(admitted->caller, call.context()));
+    if (!taken.ok()) return ToGrpc(taken.status());
+    if (call.context().IsCancelled()) return grpc::Status::CANCELLED;
+    turn = *std::move(taken);
+  }
+  const auto now = session.ReadState();
   if (!now.ok()) return ToGrpc(now.status());
-  const Model& model = call->session->model();
-  response->set_state_hash(session::HashText(now->state));
-  *response->mutable_measures() = ReadMeasures(model, MakeEvalContext(model, now->parameters, now->state));
-  return ToGrpc(FillState(*call->session, now->state, request->read(), response));
+  response->set_state_hash(session::HashText(now->state()));
+  *response->mutable_measures() = ReadMeasures(model, MakeEvalContext(model, now->parameters, now->state()));
+  return ToGrpc(FillState(session, now->state(), request.read(), response));
 }
 
 grpc::Status SessionService::ResetSession(grpc::CallbackServerContext* context, const v1::ResetSessionRequest* request,

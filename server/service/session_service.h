@@ -6,6 +6,7 @@
 #include "server/service/calls/access_guard.h"
 #include "server/service/calls/call_table.h"
 #include "server/service/calls/page_tokens.h"
+#include "server/service/calls/turn.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {
@@ -52,11 +53,10 @@ class SessionService final {
                             v1::PauseSessionResponse* response);
   // Returns after the last step. Ends early with CANCELLED if the caller disconnects, unless the request has a
   // request_id: a repeat then gets the result.
-  grpc::Status StepSession(grpc::CallbackServerContext* context, const v1::StepSessionRequest* request,
-                           v1::StepSessionResponse* response);
-  // Waits at most for the current step.
-  grpc::Status GetState(grpc::CallbackServerContext* context, const v1::GetStateRequest* request,
-                        v1::GetStateResponse* response);
+  grpc::Status StepSession(ServedCall& call, const v1::StepSessionRequest& request, v1::StepSessionResponse* response);
+  // Waits at most for the current step, and leaves the stepping thread no work. RESOURCE_EXHAUSTED, here and above,
+  // before the parts of a state are copied that the caller leaves unread (CallLimits::replies).
+  grpc::Status GetState(ServedCall& call, const v1::GetStateRequest& request, v1::GetStateResponse* response);
   // Discards updates that wait for a tick. A StepSession in progress ends with ABORTED.
   grpc::Status ResetSession(grpc::CallbackServerContext* context, const v1::ResetSessionRequest* request,
                             v1::ResetSessionResponse* response);
@@ -81,6 +81,7 @@ class SessionService final {
   session::Table& table_;
   AccessGuard& guard_;
   const PageTokens& page_tokens_;
+  FairShare large_reads_{LargeReads()};  // of GetState
 };
 
 }  // namespace phrenic::service

@@ -50,18 +50,18 @@ absl::StatusOr<Mesh> FindPresentBody(const Table& table, const v1::SessionBody& 
   const Model& model = (*session)->model();
   const auto index = Find(model, wanted.body());
   if (!index.ok()) return index.status();
-  const auto fork = (*session)->MakeFork();
-  if (!fork.ok()) return fork.status();
+  const auto present = (*session)->ReadState();
+  if (!present.ok()) return present.status();
   const BodyModel& body = model.bodies[static_cast<std::size_t>(*index)];
   Mesh mesh = body.mesh;
-  PlaceBody(model, fork->state, *index, mesh.vertices);
+  PlaceBody(model, present->state(), *index, mesh.vertices);
   std::vector<int>& whole = mesh.regions[body.name];
   whole.resize(static_cast<std::size_t>(mesh.vertices.cols()));
   std::iota(whole.begin(), whole.end(), 0);
   state.set_session_id(wanted.session_id());
   state.set_body(body.name);
-  state.set_tick(fork->state.tick);
-  state.set_time(fork->state.time);
+  state.set_tick(present->state().tick);
+  state.set_time(present->state().time);
   return mesh;
 }
 

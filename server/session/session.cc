@@ -96,11 +96,9 @@ absl::StatusOr<v1::Session> Session::Pause(std::string_view token) {
 }
 
 absl::StatusOr<Session::Stepped> Session::Step(std::int64_t ticks, std::optional<std::int64_t> expected_tick,
-                                               absl::FunctionRef<bool()> cancelled, std::string_view token,
-                                               bool keep_state) {
+                                               absl::FunctionRef<bool()> cancelled, std::string_view token) {
   auto job = std::make_shared<StepJob>();
   job->left = ticks;
-  job->keep_state = keep_state;
   absl::Status started = CallToChange(token, [&] { return loop_.StartJob(job, expected_tick); });
   if (!started.ok()) return started;
   while (!job->done.WaitForNotificationWithTimeout(kLook)) {
@@ -181,6 +179,13 @@ absl::StatusOr<Fork> Session::MakeFork() {
   absl::Status called = loop_.Call([&] { fork = loop_.MakeFork(); });
   if (!called.ok()) return called;
   return fork;
+}
+
+absl::StatusOr<PresentState> Session::ReadState() {
+  absl::StatusOr<PresentState> present;
+  absl::Status called = loop_.Call([&] { present = loop_.ReadState(); });
+  if (!called.ok()) return called;
+  return present;
 }
 
 void Session::Stop(const absl::Status& reason) {

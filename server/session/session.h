@@ -99,11 +99,9 @@ class Session {
   // caller steps it, or if it is played, paused or reset meanwhile; CANCELLED as soon as `cancelled` returns true.
   // Returns OUT_OF_RANGE if a step diverges, FAILED_PRECONDITION if the session had diverged before. Steps without
   // regard to wall-clock time, as fast as the session's CPU share allows; the calling thread asks `cancelled` every 50
-  // ms. The result has the session's status and the state's hash after the last step, with `keep_state` also a copy of
-  // the state.
+  // ms. The result has the session's status and the state's hash after the last step, and the frame of that state.
   absl::StatusOr<Stepped> Step(std::int64_t ticks, std::optional<std::int64_t> expected_tick,
-                               absl::FunctionRef<bool()> cancelled, std::string_view token = {},
-                               bool keep_state = false);
+                               absl::FunctionRef<bool()> cancelled, std::string_view token = {});
   // Returns to t = 0 and discards waiting updates. Keeps parameters and pulls, forgets a divergence, and pauses. Ends a
   // Step in progress with ABORTED.
   absl::StatusOr<v1::Session> Reset(std::string_view token = {});
@@ -149,6 +147,9 @@ class Session {
   // Copies the present state, from which another run may continue. FAILED_PRECONDITION if the session has diverged.
   // Waits for the step in progress; the copy is independent of the session.
   absl::StatusOr<Fork> MakeFork();
+  // Reads the present state, shared with the viewers: while the session steps, that of the newest frame, which is at
+  // most a frame old. The same error and the same wait; the stepping thread does no work that grows with the model.
+  absl::StatusOr<PresentState> ReadState();
   // Waits until the stepping thread has handed its last state to the store. Requires: Stop was called.
   void AwaitEnd() const { loop_.AwaitEnd(); }
   // Ends the stepping thread soon and all viewers with `reason`, which later calls return. Does not wait for the

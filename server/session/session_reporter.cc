@@ -99,7 +99,8 @@ void SessionReporter::OfferFrame(const RunningSession& session, absl::Time now) 
   snapshot->state = session.run.state();
   snapshot->parameters = session.run.parameters();
   snapshot->made = now;
-  publisher_.Offer(std::move(snapshot));
+  newest_ = std::move(snapshot);
+  publisher_.Offer(newest_);
 }
 
 void SessionReporter::NoteReset() {

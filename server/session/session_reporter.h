@@ -60,6 +60,8 @@ class SessionReporter {
   // Offers a frame of the present state to viewers, unless the newest frame has the same tick. Copies the state and the
   // parameters; viewers may skip the frame.
   void OfferFrame(const RunningSession& session, absl::Time now);
+  // Returns the newest frame that was offered; null before the first, which comes from the loop's constructor.
+  const std::shared_ptr<const stream::Snapshot>& newest_frame() const { return newest_; }
   // Makes the next OfferFrame offer a frame in any case, and the next save begin at t = 0.
   void NoteReset();
   // Shows viewers a camera, until another person controls than now.
@@ -75,8 +77,9 @@ class SessionReporter {
   StatusBoard& board_;
   SessionSaver& saver_;
   stream::Publisher& publisher_;
-  std::int64_t frames_ = 0;            // offered so far: the sequence number of the newest
-  std::int64_t framed_tick_ = -1;      // of the newest frame
+  std::int64_t frames_ = 0;        // offered so far: the sequence number of the newest
+  std::int64_t framed_tick_ = -1;  // of the newest frame
+  std::shared_ptr<const stream::Snapshot> newest_;
   std::int64_t reported_control_ = 0;  // the revision of the control that was reported last
   std::string camera_of_;              // the controller who shows a camera; empty: none is shown
 };

@@ -190,7 +190,7 @@ void SteppingLoop::EndJob(absl::Status status) {
   job_->result.state_hash = HashText(session_.run.state());
   job_->result.measures = ReadMeasures(
       session_.run.model(), MakeEvalContext(session_.run.model(), session_.run.parameters(), session_.run.state()));
-  if (job_->keep_state) job_->result.state = session_.run.state();
+  job_->result.frame = reporter_.newest_frame();
   const auto job = std::exchange(job_, nullptr);
   job->done.Notify();
 }
@@ -211,6 +211,14 @@ void SteppingLoop::Halt(v1::SessionState state) {
 absl::StatusOr<Fork> SteppingLoop::MakeFork() const {
   if (absl::Status good = CheckNotDiverged(); !good.ok()) return good;
   return Fork{session_.run.parameters(), session_.run.state(), session_.stable_step};
+}
+
+absl::StatusOr<PresentState> SteppingLoop::ReadState() {
+  if (absl::Status good = CheckNotDiverged(); !good.ok()) return good;
+  if (job_ == nullptr && session_.phase != v1::SESSION_STATE_PLAYING) OfferFrame(clock_.Now());
+  PresentState present{session_.run.parameters(), reporter_.newest_frame()};
+  if (present.state().tick != session_.run.state().tick) present.parameters = present.frame->parameters;
+  return present;
 }
 
 absl::Status SteppingLoop::CheckRevision(std::optional<std::int64_t> expected) const {

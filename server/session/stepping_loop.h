@@ -30,17 +30,23 @@ namespace phrenic::session {
 // What a call of Session::Step returns.
 struct StepResult {
   v1::Session session;
-  std::string state_hash;      // 16 hexadecimal digits (HashText)
-  MeasureReadings measures;    // of the same state
-  std::optional<State> state;  // set if StepJob::keep_state
+  std::string state_hash;                         // 16 hexadecimal digits (HashText)
+  MeasureReadings measures;                       // of the same state
+  std::shared_ptr<const stream::Snapshot> frame;  // of the same state if all steps were taken; shared with the viewers
+};
+
+// A moment of a session that is read and not changed.
+struct PresentState {
+  v1::Parameters parameters;                      // at the frame's tick
+  std::shared_ptr<const stream::Snapshot> frame;  // never null; shared with the viewers
+  const State& state() const { return frame->state; }
 };
 
 // A call of Session::Step in progress. The stepping thread writes it, and notifies `done` when it has ended. The caller
-// sets `left` and `keep_state` before it starts the job, and reads the others after `done`.
+// sets `left` before it starts the job, and reads the others after `done`.
 struct StepJob {
   std::int64_t left = 0;  // ticks
-  bool keep_state = false;
-  absl::Status status;  // why it ended early, or OK
+  absl::Status status;    // why it ended early, or OK
   StepResult result;
   absl::Notification done;
 };
@@ -95,6 +101,8 @@ class SteppingLoop {
   absl::Status ChangePulls(const std::vector<VertexPull>& changes, bool release_others);
   // FAILED_PRECONDITION if the session has diverged. Copies parameters and state.
   absl::StatusOr<Fork> MakeFork() const;
+  // The same error. Shares the newest frame; copies a state only if nothing steps and no frame of this tick was made.
+  absl::StatusOr<PresentState> ReadState();
   // Reports control if `change` has changed it. Returns what clients may know of it, or the error of `change`.
   absl::StatusOr<v1::Control> ChangeControl(absl::FunctionRef<absl::Status(ControlBook& book, absl::Time now)> change);
   // The errors of ControlBook::CheckAlone.

@@ -16,6 +16,29 @@
 namespace phrenic::session {
 namespace {
 
+// Each session has copies of its state, whoever made the model: those of one account have at most so many times
+// --max-vertices, and all together twice as many.
+constexpr std::int64_t kScenesOfAccount = 2, kScenesInAll = 4;
+
+using Sessions = std::map<std::string, std::shared_ptr<Session>>;
+
+// Checks that a session of `model` may be added for the account.
+absl::Status CheckVertices(const Sessions& sessions, const Model& model, const std::string& account,
+                           std::int64_t of_scene) {
+  std::int64_t own = model.rest.cols(), all = own;
+  for (const auto& [id, session] : sessions) {
+    if (session == nullptr) continue;
+    all += session->model().rest.cols();
+    if (session->access()->account == account) own += session->model().rest.cols();
+  }
+  const bool too_many = !account.empty() && own > kScenesOfAccount * of_scene;
+  if (!too_many && all <= kScenesInAll * of_scene) return absl::OkStatus();
+  return absl::ResourceExhaustedError(absl::StrCat(
+      too_many ? "your" : "all", " sessions would have ", too_many ? own : all, " vertices, and may have ",
+      (too_many ? kScenesOfAccount : kScenesInAll) * of_scene,
+      " together; delete one first, choose a coarser scene, or start the server with a larger --max-vertices"));
+}
+
 constexpr int kUsualPage = 100;
 constexpr int kLargestPage = 1000;
 constexpr double kTemporaryMinutes = 1;  // a temporary copy without viewers or calls is kept
@@ -155,6 +178,11 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Fork(const v1::ForkSessionReques
   const absl::StatusOr<std::shared_ptr<Session>> of = Find(request.session_id());
   if (!of.ok()) return of.status();
   const std::string account = control.state().account;
+  {
+    absl::MutexLock lock(&mutex_);
+    absl::Status room = CheckVertices(sessions_, (*of)->model(), account, limits_.vertices);
+    if (!room.ok()) return room;
+  }
   return Admit("fork_id", request.fork_id(), (*of)->model().scene.name(), account,
                [&](const Claim& claim) { return MakeFork(claim, **of, request.temporary(), std::move(control)); });
 }
@@ -166,7 +194,12 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Admit(const char* field, const s
   if (!claim.ok()) return claim.status();
   absl::StatusOr<std::shared_ptr<Session>> session = make(*claim);
   if (session.ok()) {
-    absl::Status saved = (*session)->Flush();
+    absl::Status saved;
+    {
+      absl::MutexLock lock(&mutex_);
+      saved = CheckVertices(sessions_, (*session)->model(), account, limits_.vertices);
+    }
+    if (saved.ok()) saved = (*session)->Flush();
     if (saved.ok()) saved = (*session)->Acknowledge();
     if (!saved.ok()) {
       (*session)->Forget();

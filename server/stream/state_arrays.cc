@@ -9,6 +9,8 @@
 namespace phrenic::stream {
 namespace {
 
+constexpr std::size_t kPoseBytes = 7 * sizeof(float);  // a quaternion and a translation
+
 void WriteLayout(const Model& model, v1::StateLayout& layout) {
   for (const BodyModel& body : model.bodies) {
     if (body.first_vertex < 0) continue;
@@ -53,6 +55,20 @@ absl::Status WritePart(const Model& model, const Layout& layout, const State& st
 absl::Status CheckParts(const StateParts& parts) {
   if (!absl::c_linear_search(parts, static_cast<int>(v1::STATE_PART_UNSPECIFIED))) return absl::OkStatus();
   return absl::InvalidArgumentError("read: STATE_PART_UNSPECIFIED is not a part of a state");
+}
+
+std::size_t StateBytes(const Model& model, const Layout& layout, const StateParts& parts) {
+  const auto vertices = static_cast<std::size_t>(model.rest.cols());
+  const std::set<int> wanted(parts.begin(), parts.end());
+  const std::size_t points = wanted.count(v1::STATE_PART_POSITIONS) + wanted.count(v1::STATE_PART_VELOCITIES);
+  std::size_t bytes = 3 * sizeof(double) * vertices * points;
+  if (wanted.contains(v1::STATE_PART_SCALARS)) bytes += 2 * sizeof(double) * model.scalars.size();
+  if (wanted.contains(v1::STATE_PART_BODIES)) {
+    const auto driven = absl::c_count_if(model.bodies, [](const BodyModel& body) { return body.pose >= 0; });
+    bytes += 3 * sizeof(float) * static_cast<std::size_t>(layout.vertices());
+    bytes += kPoseBytes * static_cast<std::size_t>(driven);
+  }
+  return bytes;
 }
 
 absl::StatusOr<v1::StateArrays> MakeStateArrays(const Model& model, const Layout& layout, const State& state,

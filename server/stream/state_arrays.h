@@ -4,6 +4,8 @@
 
 #include <google/protobuf/repeated_field.h>
 
+#include <cstddef>
+
 #include "absl/status/statusor.h"
 #include "phrenic/v1/state.pb.h"
 #include "server/mechanics/model.h"
@@ -16,6 +18,9 @@ using StateParts = google::protobuf::RepeatedField<int>;
 
 // INVALID_ARGUMENT, naming the field `read`, if a part is STATE_PART_UNSPECIFIED. Validation refuses unknown numbers.
 absl::Status CheckParts(const StateParts& parts);
+
+// Returns the bytes of the arrays of MakeStateArrays, without names and without what is the same for every model.
+std::size_t StateBytes(const Model& model, const Layout& layout, const StateParts& parts);
 
 // Copies the parts of the state, each once however often it is named. Positions [m], velocities [m/s] and scalars are
 // the state's own float64 numbers, bit for bit; bodies are placed as frames place them, float32. INTERNAL if a number

@@ -4,6 +4,7 @@
 // After Boost, which needs <utility> first.
 #include <gmock/gmock.h>
 #include <google/protobuf/descriptor.h>
+#include <google/protobuf/text_format.h>
 #include <grpcpp/generic/generic_stub.h>
 
 #include <filesystem>
@@ -195,6 +196,53 @@ TEST_F(Calls, WatchesOfOneAccountBlockNoOther) {
   v1::WatchStudyResponse seen;
   EXPECT_TRUE(reader->Read(&seen)) << reader->Finish().error_message();
   context.TryCancel();
+}
+
+// The vertices of this block are 0.4 MB of state, so that each reply has a place of its own and none fits the windows.
+TEST_F(Calls, AStateThatCannotBeSentIsNeitherReadNorStepped) {
+  StartGuarded();
+  const auto stub = v1::SessionService::NewStub(server_->NewChannel());
+  v1::CreateSessionRequest create;
+  create.set_session_id("block");
+  ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(
+      "name: 'block' bodies { name: 'block' role: ROLE_DEFORMABLE block { size { x: 1 y: 1 z: 1 } columns: 19 "
+      "rows: 19 layers: 19 } }",
+      create.mutable_source()->mutable_scene()));
+  const grpc::Status created = Call(stub, &v1::SessionService::Stub::CreateSession, create, "greedy");
+  ASSERT_TRUE(created.ok()) << created.error_message();
+  v1::GetStateRequest get;
+  get.set_session_id("block");
+  get.add_read(v1::STATE_PART_POSITIONS);
+  get.add_read(v1::STATE_PART_VELOCITIES);
+  const std::string message = get.SerializeAsString();
+  const std::string headers = http2::HeaderBlock(
+      http2::CallHeaders("/phrenic.v1.SessionService/GetState", {{"authorization", "Bearer " + tokens_.at("greedy")}}));
+  RawSocket unread(server_->port());
+  unread.Send(std::string(http2::kPreface) + http2::Frame(http2::FrameType::kSettings, 0, 0, "") +
+              http2::Frame(http2::FrameType::kSettings, http2::kAck, 0, ""));
+  for (std::uint32_t stream = 1; stream < 2 * 80; stream += 2) {
+    unread.Send(
+        http2::Frame(http2::FrameType::kHeaders, http2::kEndHeaders, stream, headers) +
+        http2::Frame(http2::FrameType::kData, http2::kEndStream, stream, http2::GrpcPrefix(message.size()) + message));
+  }
+  v1::StepSessionRequest step;
+  step.set_session_id("block");
+  step.set_ticks(1);
+  *step.mutable_read() = get.read();
+  grpc::Status refused;
+  const absl::Time last = absl::Now() + absl::Seconds(kPatience);
+  while (refused.ok() && absl::Now() < last) {
+    refused = Call(stub, &v1::SessionService::Stub::GetState, get, "greedy");
+  }
+  EXPECT_EQ(refused.error_code(), grpc::RESOURCE_EXHAUSTED) << refused.error_message();
+  EXPECT_THAT(refused.error_message(), HasSubstr("large replies"));
+  EXPECT_EQ(Call(stub, &v1::SessionService::Stub::StepSession, step, "greedy").error_code(), grpc::RESOURCE_EXHAUSTED);
+  step.clear_read();
+  step.set_expected_tick(0);
+  const grpc::Status stepped = Call(stub, &v1::SessionService::Stub::StepSession, step, "greedy");
+  EXPECT_TRUE(stepped.ok()) << stepped.error_message() << ": a step was taken whose state could not be sent";
+  get.clear_read();
+  EXPECT_TRUE(Call(stub, &v1::SessionService::Stub::GetState, get, "greedy").ok());
 }
 
 TEST_F(Calls, CallersWithoutAccountBlockNoAccount) {

@@ -3,13 +3,16 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
+#include <thread>
 
 #include "phrenic/v1/access.grpc.pb.h"
 #include "phrenic/v1/compare.grpc.pb.h"
 #include "phrenic/v1/study.grpc.pb.h"
 #include "server/access/token_file.h"
+#include "server/service/calls/turn.h"
 #include "tests/service/server_fixture.h"
 
 namespace phrenic::service {
@@ -54,6 +57,20 @@ TEST(FairShare, CallersThatWaitGetPlacesInTurn) {
     last = nullptr;
   }
   EXPECT_THAT(got, ElementsAre("greedy", "greedy", "modest", "greedy", "greedy"));
+}
+
+TEST(FairShare, ReadsOfLargeModelsAreTwoAtATimeAndOneOfACaller) {
+  FairShare share(LargeReads());
+  auto first = AwaitTurn(share, "greedy");
+  ASSERT_TRUE(first.ok());
+  std::atomic<bool> again = false;
+  std::thread waits([&] { again = AwaitTurn(share, "greedy").ok(); });
+  EXPECT_TRUE(AwaitTurn(share, "modest").ok()) << "it waits behind the greedy one";
+  absl::SleepFor(absl::Milliseconds(50));
+  EXPECT_FALSE(again);
+  first->reset();
+  waits.join();
+  EXPECT_TRUE(again);
 }
 
 TEST(FairShare, WhoHasGoneIsPassedOver) {

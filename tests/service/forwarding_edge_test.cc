@@ -2,9 +2,16 @@
 // and a cluster over TLS.
 #include "tests/service/raw_http2.h"
 // After Boost, which needs <utility> first.
+#include <grpcpp/generic/async_generic_service.h>
+#include <grpcpp/server_builder.h>
+
+#include <atomic>
 #include <boost/asio/ip/tcp.hpp>
 #include <filesystem>
+#include <thread>
 
+#include "absl/time/clock.h"
+#include "server/cluster/cluster.h"
 #include "server/service/net/metadata.h"
 #include "tests/cluster/redis_server.h"
 #include "tests/service/certificates.h"
@@ -101,6 +108,74 @@ class ClusterEdge : public GrpcEdge {
 };
 
 TEST_F(ClusterEdge, NoHeaderStopsAServerThatPassesCallsOn) { Attack(); }
+
+// A server of the cluster that takes calls and answers none.
+class HangingPeer : public grpc::CallbackGenericService {
+ public:
+  explicit HangingPeer(const std::string& address) {
+    grpc::ServerBuilder builder;
+    builder.AddListeningPort(address, grpc::InsecureServerCredentials());
+    builder.RegisterCallbackGenericService(this);
+    server_ = builder.BuildAndStart();
+  }
+  ~HangingPeer() override { server_->Shutdown(std::chrono::system_clock::now()); }
+  grpc::ServerGenericBidiReactor* CreateReactor(grpc::GenericCallbackServerContext*) override {
+    ++calls_;
+    return new Call(cancelled_);
+  }
+  int calls() const { return calls_; }
+  // True if the callers of all calls have left within the time.
+  bool AwaitCancel(absl::Duration time) const {
+    const absl::Time end = absl::Now() + time;
+    while (cancelled_ < calls_ && absl::Now() < end) absl::SleepFor(absl::Milliseconds(5));
+    return cancelled_ == calls_;
+  }
+
+ private:
+  class Call final : public grpc::ServerGenericBidiReactor {
+   public:
+    explicit Call(std::atomic<int>& cancelled) : cancelled_(cancelled) {}
+    void OnCancel() override {
+      ++cancelled_;
+      Finish(grpc::Status::CANCELLED);
+    }
+    void OnDone() override { delete this; }
+
+   private:
+    std::atomic<int>& cancelled_;
+  };
+  std::atomic<int> calls_ = 0, cancelled_ = 0;
+  std::unique_ptr<grpc::Server> server_;
+};
+
+TEST_F(ClusterEdge, AListIsNoLongerAskedForWhenItsCallerHasGone) {
+  const std::string address = absl::StrCat("127.0.0.1:", FreePorts());
+  HangingPeer peer(address);
+  auto joined = cluster::Cluster::Join({.redis = redis_->url(), .advertise = address});
+  ASSERT_TRUE(joined.ok()) << joined.status();
+  (*joined)->Start({.lost = [](const std::string&) {},
+                    .take_over = [](const store::SavedSession&, std::int64_t) { return absl::OkStatus(); },
+                    .copy_whole = [](const std::vector<std::string>&) {}});
+  (*joined)->StartTakeovers();
+  v1::ListSessionsResponse response;
+  const absl::Time last = absl::Now() + absl::Seconds(30);
+  while (peer.calls() == 0 && absl::Now() < last) {  // until the server knows the other one
+    grpc::ClientContext brief;
+    brief.set_deadline(std::chrono::system_clock::now() + std::chrono::milliseconds(300));
+    sessions_->ListSessions(&brief, v1::ListSessionsRequest(), &response);
+  }
+  const int before = peer.calls();
+  ASSERT_GT(before, 0);
+  EXPECT_TRUE(peer.AwaitCancel(absl::Seconds(1))) << "it has the deadline of its caller";
+  grpc::ClientContext context;
+  std::thread caller([&] { sessions_->ListSessions(&context, v1::ListSessionsRequest(), &response); });
+  while (peer.calls() == before && absl::Now() < last) absl::SleepFor(absl::Milliseconds(5));
+  context.TryCancel();
+  EXPECT_TRUE(peer.AwaitCancel(absl::Seconds(1))) << "it would end after 2 s by itself";
+  caller.join();
+  EXPECT_EQ(peer.calls(), before + 1);
+  (*joined)->Leave();
+}
 
 // Two servers and Redis, which talk to each other over TLS only.
 class ClusterOverTls : public testing::Test {

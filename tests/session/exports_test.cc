@@ -143,6 +143,18 @@ TEST_F(ExportsTest, DeletingOneEndsItAndTheNextOneRuns) {
   EXPECT_TRUE(absl::IsNotFound(exports_.Delete("class")));
 }
 
+TEST_F(ExportsTest, ThoseOfLargeScenesAreFewer) {
+  Exports exports({.exports = 1, .vertices = 3, .kept_exports = 16}, testing::TempDir(), clock_);
+  request_.set_seconds(3600);
+  const auto add = [&](const std::string& owner) {
+    return exports.Add(request_, {model_, {model_->parameters, model_->InitialState()}, {}, owner}).status();
+  };
+  EXPECT_TRUE(add("anna").ok() && add("anna").ok());
+  EXPECT_TRUE(absl::IsResourceExhausted(add("anna"))) << "three states wait that are as large as a scene may be";
+  EXPECT_TRUE(add("ben").ok() && add("ben").ok());
+  EXPECT_TRUE(absl::IsResourceExhausted(add("cleo")));
+}
+
 TEST_F(ExportsTest, TheOldestThatHasEndedMakesRoomAndRunningOnesDoNot) {
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(Add().ok());
   EXPECT_EQ(Ended("class-3").state(), v1::EXPORT_STATE_DONE);

@@ -86,6 +86,47 @@ TEST_F(SessionTest, PlayingGivesTheStatesOfStepping) {
   EXPECT_EQ(HashText(fork->state), HashAfter(*stepped, fork->state.tick));
 }
 
+TEST_F(SessionTest, ReadingTheStateCopiesNone) {
+  const auto session = Make();
+  v1::Parameters fine;
+  fine.set_time_step(0.001);
+  ASSERT_TRUE(session->Update(fine, std::nullopt).ok());
+  const std::string hash = HashAfter(*session, 7);
+  const auto once = session->ReadState(), again = session->ReadState();
+  ASSERT_TRUE(once.ok() && again.ok());
+  EXPECT_EQ(HashText(once->state()), hash);
+  EXPECT_EQ(once->frame, again->frame);
+  ASSERT_TRUE(session->Play(std::nullopt, false, 0).ok());
+  clock_.Advance(absl::Seconds(kFrame / 2));  // a command ends the wait for the next frame, and steps are taken
+  ASSERT_TRUE(Eventually([&] { return session->MakeFork()->state.tick > 7; }));
+  const auto playing = session->ReadState();
+  ASSERT_TRUE(playing.ok());
+  EXPECT_EQ(playing->frame, once->frame) << "a reader had the stepping thread copy the state";
+}
+
+TEST_F(SessionTest, AStateThatRestsIsReadWithThePresentParameters) {
+  const auto session = Make();
+  HashAfter(*session, 2);
+  v1::Parameters change;
+  change.set_breath_force(2.5);
+  ASSERT_TRUE(session->Update(change, std::nullopt).ok());
+  const auto read = session->ReadState();
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(read->state().tick, 2);
+  EXPECT_EQ(read->parameters.breath_force(), 2.5);
+}
+
+TEST_F(SessionTest, AfterAStepThatWasCancelledTheLastStateIsRead) {
+  const auto session = Make();
+  int asked = 0;
+  EXPECT_TRUE(absl::IsCancelled(session->Step(1'000'000'000, std::nullopt, [&] { return ++asked > 2; }).status()));
+  const auto read = session->ReadState();
+  const auto fork = session->MakeFork();
+  ASSERT_TRUE(read.ok() && fork.ok());
+  EXPECT_EQ(read->state().tick, fork->state.tick);
+  EXPECT_EQ(HashText(read->state()), HashText(fork->state));
+}
+
 TEST_F(SessionTest, AStaleTickIsRefused) {
   const auto session = Make();
   HashAfter(*session, 3);

@@ -146,6 +146,32 @@ TEST_F(TableTest, MoreSessionsThanAllowedAreRefused) {
   EXPECT_EQ((*Create(""))->id(), "triangle-3");
 }
 
+// The triangle is as large as a scene may be: an account has two of them, and all accounts together four.
+TEST_F(TableTest, SessionsOfLargeScenesAreFewer) {
+  Table table(models_, clock_, {.sessions = 16, .vertices = 3});
+  const auto control = [](const std::string& account) {
+    return *ControlBook::Make(v1::CONTROL_POLICY_UNSPECIFIED, "", account);
+  };
+  const auto create = [&](const std::string& account) {
+    v1::CreateSessionRequest request;
+    *request.mutable_source() = Named("triangle");
+    return table.Create(request, control(account)).status();
+  };
+  const auto fork = [&](const std::string& account) {
+    v1::ForkSessionRequest request;
+    request.set_session_id(table.List(1, "", [](const Session&) { return true; }).sessions[0]->id());
+    return table.Fork(request, control(account)).status();
+  };
+  EXPECT_TRUE(create("anna").ok() && fork("anna").ok());
+  for (const absl::Status& refused : {create("anna"), fork("anna")}) {
+    EXPECT_TRUE(absl::IsResourceExhausted(refused)) << refused;
+    EXPECT_THAT(Message(refused), HasSubstr("--max-vertices"));
+  }
+  EXPECT_TRUE(create("ben").ok() && fork("ben").ok());
+  EXPECT_TRUE(absl::IsResourceExhausted(create("cleo")));
+  EXPECT_EQ(table.List(16, "", [](const Session&) { return true; }).sessions.size(), 4u) << "a refused one is there";
+}
+
 TEST_F(TableTest, ASessionThatCannotBeCreatedLeavesItsIdFree) {
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(absl::IsNotFound(Create("x", "thorux").status()));
   EXPECT_TRUE(Create("x").ok());

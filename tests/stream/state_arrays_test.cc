@@ -69,6 +69,22 @@ TEST(StateArrays, APartThatIsNamedOftenIsWrittenOnce) {
   EXPECT_EQ(arrays->SerializeAsString(), once->SerializeAsString());
 }
 
+TEST(StateArrays, TheirBytesAreKnownBefore) {
+  const auto model = CompileWithScalars(kTriangle);
+  const Layout layout(*model);
+  for (const int part : {v1::STATE_PART_POSITIONS, v1::STATE_PART_VELOCITIES, v1::STATE_PART_SCALARS,
+                         v1::STATE_PART_BODIES, v1::STATE_PART_BODIES}) {
+    const StateParts parts = Parts({v1::STATE_PART_POSITIONS, part});
+    const auto arrays = MakeStateArrays(*model, layout, model->InitialState(), parts);
+    ASSERT_TRUE(arrays.ok()) << arrays.status();
+    EXPECT_EQ(StateBytes(*model, layout, parts), arrays->positions().size() + arrays->velocities().size() +
+                                                     arrays->scalars().size() + arrays->scalar_rates().size() +
+                                                     arrays->body_positions().size() + arrays->poses().size())
+        << part;
+  }
+  EXPECT_EQ(StateBytes(*model, layout, Parts({})), 0u);
+}
+
 TEST(StateArrays, APartThatIsNotSetIsRefused) {
   EXPECT_TRUE(CheckParts(Parts({v1::STATE_PART_POSITIONS, v1::STATE_PART_LAYOUT})).ok());
   EXPECT_EQ(CheckParts(Parts({v1::STATE_PART_UNSPECIFIED})).code(), absl::StatusCode::kInvalidArgument);

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "phrenic/v1/saved.pb.h"
+#include "server/study/queue/request_size.h"
 
 namespace phrenic::study {
 namespace {
@@ -67,6 +68,20 @@ class StudiesTest : public testing::Test {
   std::unique_ptr<store::Store> store_ = *store::Store::Open(folder_);
   std::map<std::string, absl::Status> lost_;
 };
+
+TEST(StudyRequests, HaveABoundedSize) {
+  v1::CreateStudyRequest request;
+  request.mutable_source()->set_name("sheet-2d");
+  for (int i = 0; i < 256; ++i) request.mutable_error()->add_integrators(v1::INTEGRATOR_VELOCITY_VERLET);
+  EXPECT_TRUE(CheckSize(request).ok());
+  request.mutable_error()->add_integrators(v1::INTEGRATOR_VELOCITY_VERLET);
+  EXPECT_TRUE(absl::IsInvalidArgument(CheckSize(request)));
+  EXPECT_EQ(CheckSize(request).message().find("error.integrators: has 257"), 0u) << CheckSize(request);
+  request.mutable_streaming();
+  EXPECT_TRUE(CheckSize(request).ok());
+  request.mutable_source()->mutable_scene()->set_description(std::string(17 << 20, 'x'));
+  EXPECT_TRUE(absl::IsResourceExhausted(CheckSize(request)));
+}
 
 TEST_F(StudiesTest, DeriveTheirIdFromKindAndSceneAndRefuseInvalidRequests) {
   const auto studies = Make();

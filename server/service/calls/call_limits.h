@@ -4,6 +4,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
 
 #include "server/service/calls/fair_share.h"
 #include "server/service/calls/worker_threads.h"
@@ -30,8 +31,8 @@ class CallLimits {
  public:
   // `max_calls` is the number of calls and streams in flight of one caller. All callers together have four times as
   // many. Of one caller, a quarter of `max_calls` may wait for a thread of each lane but kWatch. `request_time` is that
-  // of --idle-seconds.
-  CallLimits(int max_calls, std::chrono::milliseconds request_time);
+  // of --idle-seconds, `max_message` the size of the largest request [bytes].
+  CallLimits(int max_calls, std::chrono::milliseconds request_time, std::size_t max_message);
 
   // Calls and streams in flight: of callers with an account or a link, and of the others. IncomingCall takes a place
   // when it has the headers, and holds it until the call is done. RESOURCE_EXHAUSTED if all are held. Callers of the
@@ -42,8 +43,13 @@ class CallLimits {
   // RESOURCE_EXHAUSTED.
   FairShare& unread() { return unread_; }
   FairShare& conversations() { return conversations_; }
+  // Large requests that were read and are not answered, so that a caller does not pile them up: one of the largest size
+  // has four places (PlacesOf). 128 places, 32 of one caller; a request does not wait for a place.
+  FairShare& requests() { return requests_; }
+  // Returns the places of a request of so many bytes. None up to 64 KiB.
+  std::size_t PlacesOf(std::size_t request) const;
   // Large replies that their clients have not read. Large means more than 64 KiB (ServedCall::Reply); each has a place
-  // for every 4 MiB. 256 places, 64 of one caller; a reply does not wait for a place.
+  // for every 4 MiB. 128 places, 64 of one caller; a reply does not wait for a place.
   FairShare& replies() { return replies_; }
   // A call holds its place while its handler runs.
   FairShare& lane(Lane lane) { return lanes_[static_cast<std::size_t>(lane)]; }
@@ -54,7 +60,8 @@ class CallLimits {
 
  private:
   const std::chrono::milliseconds request_time_;
-  FairShare in_flight_, unknown_, unread_, conversations_, replies_;
+  const std::size_t bytes_of_place_;  // of a request
+  FairShare in_flight_, unknown_, unread_, conversations_, requests_, replies_;
   std::array<FairShare, 5> lanes_;  // by Lane
   WorkerThreads threads_;           // last: its destructor waits for handlers, which hold places of the others
 };

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "absl/strings/str_cat.h"
 #include "server/service/calls/reply_stream.h"
 #include "server/service/calls/served_call.h"
+#include "server/service/calls/status.h"
 
 namespace phrenic::service {
 
@@ -27,6 +27,10 @@ class CallTable final : public grpc::CallbackGenericService {
   // returns.
   template <class Service, class Request, class Response>
   using Unary = grpc::Status (Service::*)(grpc::CallbackServerContext*, const Request*, Response*);
+  // The same for a method whose response may be large: before it makes one, it asks the call whether it may be sent
+  // (ServedCall::Reserve).
+  template <class Service, class Request, class Response>
+  using Large = grpc::Status (Service::*)(ServedCall&, const Request&, Response*);
   template <class Service, class Request, class Response>
   using Streaming = grpc::Status (Service::*)(grpc::CallbackServerContext*, const Request*, ReplyStream<Response>*);
 
@@ -35,12 +39,21 @@ class CallTable final : public grpc::CallbackGenericService {
 
   // Adds the method whose request has the handler's type. `service` outlives the table. access/rules.cc must have a
   // rule for the request type: the rule gives the method its name. Call it before the server starts. The request is
-  // parsed on the lane's thread. INVALID_ARGUMENT if the bytes are not a Request.
+  // parsed on the lane's thread. The errors of Parse.
   template <class Service, class Request, class Response>
   void Add(Lane lane, Service& service, Unary<Service, Request, Response> handler) {
     AddParsed<Request>(lane, [&service, handler](ServedCall& call, const Request& request) {
       Response response;
       grpc::Status status = (service.*handler)(&call.context(), &request, &response);
+      if (status.ok()) call.Reply(Serialize(response));
+      return status;
+    });
+  }
+  template <class Service, class Request, class Response>
+  void Add(Lane lane, Service& service, Large<Service, Request, Response> handler) {
+    AddParsed<Request>(lane, [&service, handler](ServedCall& call, const Request& request) {
+      Response response;
+      grpc::Status status = (service.*handler)(call, request, &response);
       if (status.ok()) call.Reply(Serialize(response));
       return status;
     });
@@ -81,11 +94,9 @@ class CallTable final : public grpc::CallbackGenericService {
   void AddParsed(Lane lane, Handler handler) {
     AddRaw<Request>(lane, [handler](ServedCall& call) -> std::optional<grpc::Status> {
       Request request;
-      const bool parsed = Parse(call.request(), request);
+      const absl::Status parsed = Parse(call.request(), request);
       call.request().Clear();
-      if (parsed) return handler(call, request);
-      return grpc::Status(grpc::StatusCode::INVALID_ARGUMENT,
-                          absl::StrCat("the message is not a ", Request::descriptor()->full_name()));
+      return parsed.ok() ? handler(call, request) : ToGrpc(parsed);
     });
   }
 

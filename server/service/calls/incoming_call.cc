@@ -53,7 +53,23 @@ void IncomingCall::OnReadDone(bool ok) {
   reading_ = nullptr;
   if (!in_time) return;
   if (context_.IsCancelled()) return FinishOnce(grpc::Status::CANCELLED);
-  ok ? OnRequest() : OnNoRequest();
+  if (!ok) return OnNoRequest();
+  if (absl::Status taken = TakePlaces(); !taken.ok()) return FinishOnce(ToGrpc(taken));
+  OnRequest();
+}
+
+absl::Status IncomingCall::TakePlaces() {
+  places_.clear();
+  const std::size_t places = limits_.PlacesOf(request_.Length());
+  while (places_.size() < places) {
+    auto place = limits_.requests().Take(caller_);
+    if (!place.ok()) {
+      request_.Clear();
+      return place.status();
+    }
+    places_.push_back(*std::move(place));
+  }
+  return absl::OkStatus();
 }
 
 void IncomingCall::Await(FairShare& share, FairShare::Granted granted) {
@@ -100,6 +116,7 @@ void IncomingCall::FinishOnce(const grpc::ByteBuffer& message, const grpc::Statu
 }
 
 void IncomingCall::OnDone() {
+  places_.clear();
   in_flight_ = nullptr;
   const std::shared_ptr<IncomingCall> self = std::move(self_);
 }

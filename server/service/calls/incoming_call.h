@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
@@ -77,6 +78,8 @@ class IncomingCall : public grpc::ServerGenericBidiReactor, public std::enable_s
   void FinishOnce(const grpc::ByteBuffer& message, const grpc::Status& status);
 
  private:
+  // Takes the places of CallLimits::requests that the request needs. RESOURCE_EXHAUSTED if there are too few.
+  absl::Status TakePlaces();
   // Starts the read and the alarm that ends the call after `time`.
   void StartReading(std::chrono::milliseconds time);
   // Ends the present wait, and the call with CANCELLED. Does nothing if the place was granted.
@@ -89,6 +92,7 @@ class IncomingCall : public grpc::ServerGenericBidiReactor, public std::enable_s
   std::string caller_;                      // constant after Begin
   grpc::ByteBuffer request_;                // written by gRPC during a read
   FairShare::Hold in_flight_, reading_;     // of the whole call; of the read in progress
+  std::vector<FairShare::Hold> places_;     // of a large request, until OnDone or the next read
   std::optional<grpc::Alarm> alarm_;        // of the read
   std::atomic<bool> read_pending_ = false;  // neither complete nor expired
   std::atomic<bool> finished_ = false;      // FinishOnce was called

@@ -5,20 +5,18 @@
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/message.h>
 #include <grpcpp/support/byte_buffer.h>
-#include <grpcpp/support/proto_buffer_reader.h>
 #include <grpcpp/support/slice.h>
 
 #include <cstdint>
 
+#include "absl/status/status.h"
+
 namespace phrenic::service {
 
-// Parses a message without copying its bytes. Returns false if they are not a `message`, which is then only partly
-// filled; its previous content is gone in any case. Thread-safe.
-inline bool Parse(const grpc::ByteBuffer& bytes, google::protobuf::Message& message) {
-  grpc::ByteBuffer shared = bytes;  // shares the slices; the reader needs a non-const buffer
-  grpc::ProtoBufferReader reader(&shared);
-  return message.ParseFromZeroCopyStream(&reader);
-}
+// Parses a message without copying its bytes. Drops what it held, and unknown fields above 64 KiB. Thread-safe. Errors:
+// INVALID_ARGUMENT if the bytes are not a `message`, which is then only partly filled; RESOURCE_EXHAUSTED, before
+// anything is built, if it would take more than four times its length and 16 MiB of memory (UnfoldedBytes).
+absl::Status Parse(const grpc::ByteBuffer& bytes, google::protobuf::Message& message);
 
 // Returns the bytes of a message. Thread-safe. The bytes lie in one slice that the buffer owns, so the message need not
 // outlive it. Requires: no other thread changes the message.

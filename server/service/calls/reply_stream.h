@@ -19,6 +19,9 @@ class ReplyStream {
   // client. The server sets no limit on the size of a message, so services send long data in chunks.
   bool Write(const Response& response) { return call_.Write(Serialize(response)); }
 
+  // Asks whether a message of so many bytes may be sent, before it is made (ServedCall::Reserve).
+  absl::Status Reserve(std::size_t bytes) { return call_.Reserve(bytes); }
+
  private:
   ServedCall& call_;
 };

@@ -41,6 +41,10 @@ void ServedCall::Run() {
 }
 
 bool ServedCall::Write(const grpc::ByteBuffer& message) {
+  if (absl::Status reserved = Reserve(message.Length()); !reserved.ok()) {
+    FinishOnce(ToGrpc(reserved));
+    return false;
+  }
   {
     absl::MutexLock lock(&mutex_);
     if (context().IsCancelled()) return false;
@@ -59,12 +63,18 @@ bool ServedCall::Write(const grpc::ByteBuffer& message) {
   return false;
 }
 
-void ServedCall::Reply(const grpc::ByteBuffer& message) {
-  for (std::size_t bytes = message.Length(); bytes > kLargeReply; bytes -= std::min(bytes, kBytesOfPlace)) {
+absl::Status ServedCall::Reserve(std::size_t bytes) {
+  const std::size_t places = bytes <= kLargeReply ? 0 : (bytes - kLargeReply + kBytesOfPlace - 1) / kBytesOfPlace;
+  while (reply_.size() < places) {
     auto place = limits().replies().Take(caller());
-    if (!place.ok()) return FinishOnce(ToGrpc(place.status()));
+    if (!place.ok()) return place.status();
     reply_.push_back(*std::move(place));
   }
+  return absl::OkStatus();
+}
+
+void ServedCall::Reply(const grpc::ByteBuffer& message) {
+  if (absl::Status reserved = Reserve(message.Length()); !reserved.ok()) return FinishOnce(ToGrpc(reserved));
   outgoing_ = message;
   FinishOnce(outgoing_, grpc::Status::OK);
 }

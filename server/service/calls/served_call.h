@@ -59,9 +59,13 @@ class ServedCall final : public IncomingCall {
   using IncomingCall::request;
 
   // For handlers. Writes a message and waits until the client's flow control accepts it. False if the client is gone,
-  // or has not read for a minute. After that minute it cancels the call. Requires: Continue was not called, and no
-  // other thread writes.
+  // has not read for a minute, or leaves too many large messages unread (Reserve). After that minute it cancels the
+  // call. Requires: Continue was not called, and no other thread writes.
   bool Write(const grpc::ByteBuffer& message) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Takes the places in CallLimits::replies that a reply of so many bytes needs, so that a handler makes a large reply
+  // only if it may be sent. RESOURCE_EXHAUSTED if the client leaves too many replies unread. The places are held until
+  // OnDone; a further call, and Reply, take only those that are missing.
+  absl::Status Reserve(std::size_t bytes);
   // Sends the only message, and ends the call. RESOURCE_EXHAUSTED, which ends it too, if the message is large and the
   // client leaves too many of them unread. Large means more than 64 KiB: its place in CallLimits::replies is held until
   // OnDone. The status that the handler returns afterwards has no effect.

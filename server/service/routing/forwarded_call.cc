@@ -51,7 +51,17 @@ UpstreamCall::Request ForwardedCall::RequestTo(const SessionRouter::Target& targ
 
 std::shared_ptr<UpstreamCall> ForwardedCall::upstream() const {
   absl::MutexLock lock(&mutex_);
-  return upstream_;
+  return upstream_.empty() || route_.fan_out ? nullptr : upstream_.back();
+}
+
+void ForwardedCall::StartUpstream(const std::shared_ptr<UpstreamCall>& call, grpc::GenericStub& stub) {
+  {
+    absl::MutexLock lock(&mutex_);
+    if (!route_.fan_out) upstream_.clear();
+    upstream_.push_back(call);
+    if (cancelled_) call->Cancel();
+  }
+  call->Start(stub);
 }
 
 void ForwardedCall::CallTarget() {
@@ -61,12 +71,7 @@ void ForwardedCall::CallTarget() {
       RequestTo(target),
       {.message = [self = self()](const grpc::ByteBuffer& message) { return self->WriteResponse(message); },
        .done = [self = self()](const grpc::Status& status) { self->OnUpstreamDone(status); }});
-  {
-    absl::MutexLock lock(&mutex_);
-    upstream_ = call;
-    if (cancelled_) upstream_->Cancel();
-  }
-  call->Start(*target.stub);
+  StartUpstream(call, *target.stub);
 }
 
 bool ForwardedCall::WriteResponse(const grpc::ByteBuffer& message) {
@@ -103,20 +108,20 @@ void ForwardedCall::OnUpstreamDone(const grpc::Status& status) {
 }
 
 void ForwardedCall::OnCancel() {
-  std::shared_ptr<UpstreamCall> call;
+  std::vector<std::shared_ptr<UpstreamCall>> calls;
   {
     absl::MutexLock lock(&mutex_);
     cancelled_ = true;
-    call = upstream_;
+    calls = upstream_;
   }
-  if (call != nullptr) call->Cancel();
+  for (const auto& call : calls) call->Cancel();
   IncomingCall::OnCancel();
 }
 
 void ForwardedCall::OnDone() {
   {
     absl::MutexLock lock(&mutex_);
-    upstream_ = nullptr;
+    upstream_.clear();
   }
   IncomingCall::OnDone();
 }
@@ -136,7 +141,7 @@ void ForwardedCall::FanOut() {
       return true;
     };
     const auto done = [self = self(), i](const grpc::Status& status) { self->OnFanOutDone(i, status); };
-    UpstreamCall::Make(std::move(request), {.message = keep, .done = done})->Start(*route_.targets[i].stub);
+    StartUpstream(UpstreamCall::Make(std::move(request), {.message = keep, .done = done}), *route_.targets[i].stub);
   }
 }
 

@@ -33,7 +33,7 @@ class ForwardedCall final : public IncomingCall {
                              grpc::GenericCallbackServerContext& context);
 
   // Reactions, on gRPC's threads. OnWriteDone reads on, and cancels the upstream call if the client is gone. OnCancel
-  // cancels the upstream call, but not those of a fan-out: they run until they end or their deadlines pass.
+  // cancels the upstream calls.
   void OnWriteDone(bool ok) override;
   void OnCancel() override ABSL_LOCKS_EXCLUDED(mutex_);
   void OnDone() override;
@@ -51,6 +51,8 @@ class ForwardedCall final : public IncomingCall {
   UpstreamCall::Request RequestTo(const SessionRouter::Target& target);
   // Returns null before the first target, in a fan-out, and after OnDone.
   std::shared_ptr<UpstreamCall> upstream() const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Makes `call` one of those that OnCancel cancels, and starts it.
+  void StartUpstream(const std::shared_ptr<UpstreamCall>& call, grpc::GenericStub& stub) ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Calls the target with index target_.
   void CallTarget() ABSL_LOCKS_EXCLUDED(mutex_);
@@ -77,12 +79,12 @@ class ForwardedCall final : public IncomingCall {
   grpc::Status first_status_;               // of the first target; returned if no target finds the resource
 
   mutable absl::Mutex mutex_;
-  std::shared_ptr<UpstreamCall> upstream_ ABSL_GUARDED_BY(mutex_);   // to the current target
-  bool cancelled_ ABSL_GUARDED_BY(mutex_) = false;                   // the client has gone
-  std::vector<grpc::ByteBuffer> responses_ ABSL_GUARDED_BY(mutex_);  // of a fan-out, one per target
-  std::size_t pending_ ABSL_GUARDED_BY(mutex_) = 0;                  // targets of a fan-out that have not ended
-  grpc::Status local_status_ ABSL_GUARDED_BY(mutex_);                // of a fan-out's first target, this server
-  bool any_ok_ ABSL_GUARDED_BY(mutex_) = false;                      // a target of a fan-out has succeeded
+  std::vector<std::shared_ptr<UpstreamCall>> upstream_ ABSL_GUARDED_BY(mutex_);  // to the current target; to all
+  bool cancelled_ ABSL_GUARDED_BY(mutex_) = false;                               // the client has gone
+  std::vector<grpc::ByteBuffer> responses_ ABSL_GUARDED_BY(mutex_);              // of a fan-out, one per target
+  std::size_t pending_ ABSL_GUARDED_BY(mutex_) = 0;    // targets of a fan-out that have not ended
+  grpc::Status local_status_ ABSL_GUARDED_BY(mutex_);  // of a fan-out's first target, this server
+  bool any_ok_ ABSL_GUARDED_BY(mutex_) = false;        // a target of a fan-out has succeeded
 };
 
 }  // namespace phrenic::service

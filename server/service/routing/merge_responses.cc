@@ -15,12 +15,12 @@ grpc::ByteBuffer MergeSessionPages(const grpc::ByteBuffer& request, const std::v
                                    const PageTokens& tokens) {
   constexpr int kDefaultPageSize = 100;
   v1::ListSessionsRequest asked;
-  Parse(request, asked);
+  (void)Parse(request, asked);
   std::map<std::string, v1::Session> sessions;
   bool more = false;
   for (const grpc::ByteBuffer& response : responses) {
     v1::ListSessionsResponse page;
-    if (!Parse(response, page)) continue;
+    if (!Parse(response, page).ok()) continue;
     more = more || !page.next_page_token().empty();
     for (v1::Session& session : *page.mutable_sessions()) {
       v1::Session& known = sessions[session.id()];

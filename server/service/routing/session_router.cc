@@ -33,13 +33,13 @@ std::string SessionOf(const MethodDescriptor* method, const grpc::ByteBuffer& re
   if (field == nullptr) return "";
   const std::unique_ptr<Message> message(
       google::protobuf::MessageFactory::generated_factory()->GetPrototype(method->input_type())->New());
-  return Parse(request, *message) ? message->GetReflection()->GetString(*message, field) : "";
+  return Parse(request, *message).ok() ? message->GetReflection()->GetString(*message, field) : "";
 }
 
 // Returns a session that a Compare request names; empty for other methods.
 std::string ComparedSession(const std::string& method, const grpc::ByteBuffer& request) {
   v1::CompareRequest compare;
-  if (method != "/phrenic.v1.CompareService/Compare" || !Parse(request, compare)) return "";
+  if (method != "/phrenic.v1.CompareService/Compare" || !Parse(request, compare).ok()) return "";
   return compare.a().has_body() ? compare.a().body().session_id() : compare.b().body().session_id();
 }
 

@@ -1,11 +1,18 @@
 #include "server/session/export/exports.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "server/session/export/saved_export.h"
 
 namespace phrenic::session {
+namespace {
+
+// States of waiting exports, in scenes of --max-vertices.
+constexpr std::int64_t kScenesOfOwner = 2, kScenesInAll = 4;
+
+}  // namespace
 
 static_assert(static_cast<int>(jobs::State::kQueued) == v1::EXPORT_STATE_QUEUED);
 static_assert(static_cast<int>(jobs::State::kRunning) == v1::EXPORT_STATE_RUNNING);
@@ -13,7 +20,8 @@ static_assert(static_cast<int>(jobs::State::kDone) == v1::EXPORT_STATE_DONE);
 static_assert(static_cast<int>(jobs::State::kFailed) == v1::EXPORT_STATE_FAILED);
 
 Exports::Exports(const Limits& limits, std::string spool_folder, const Clock& clock, store::Store* store)
-    : spool_folder_(std::move(spool_folder)),
+    : vertices_(limits.vertices),
+      spool_folder_(std::move(spool_folder)),
       clock_(clock),
       queue_({.noun = {"export", "exports", "an"},
               .threads = limits.exports,
@@ -33,8 +41,25 @@ absl::StatusOr<std::shared_ptr<ExportJob>> Exports::MakeJob(const v1::CreateExpo
   return std::make_shared<ExportJob>(*std::move(plan), std::move(start), *std::move(file), *std::move(record), clock_);
 }
 
+// Each waiting export has a state of its own, so those of large scenes are fewer: as if all that wait were as large.
+absl::Status Exports::CheckVertices(const Model& model, const std::string& owner) const {
+  const auto open = [](const std::vector<v1::Export>& exports) {
+    return std::count_if(exports.begin(), exports.end(), [](const v1::Export& each) {
+      return each.state() == v1::EXPORT_STATE_QUEUED || each.state() == v1::EXPORT_STATE_RUNNING;
+    });
+  };
+  const std::int64_t own = 1 + open(List([&owner](const std::string& other) { return other == owner; }));
+  const std::int64_t all = 1 + open(List());
+  const std::int64_t each = model.rest.cols();
+  if (own * each <= kScenesOfOwner * vertices_ && all * each <= kScenesInAll * vertices_) return absl::OkStatus();
+  return absl::ResourceExhaustedError(
+      absl::StrCat("too many exports wait for one more of ", each,
+                   " vertices; wait until one has ended, or start the server with a larger --max-vertices"));
+}
+
 absl::StatusOr<v1::Export> Exports::Add(const v1::CreateExportRequest& request, Start start) {
   const std::string owner = start.owner;
+  if (absl::Status room = CheckVertices(*start.model, owner); !room.ok()) return room;
   auto job = MakeJob(request, std::move(start));
   if (!job.ok()) return job.status();
   return queue_.Add(owner, request.export_id(), request.session_id(), (*job)->Describe(request.session_id()), *job);

@@ -61,9 +61,12 @@ class Exports {
   absl::StatusOr<std::shared_ptr<const record::SpoolFile>> File(const std::string& id) const;
 
  private:
+  // RESOURCE_EXHAUSTED if the states of the exports that wait or run would be those of too many large scenes.
+  absl::Status CheckVertices(const Model& model, const std::string& owner) const;
   // The errors of PlanExport, record::SpoolFile::Open and SaveExport.
   absl::StatusOr<std::shared_ptr<ExportJob>> MakeJob(const v1::CreateExportRequest& request, Start start) const;
 
+  const std::int64_t vertices_;  // Limits::vertices
   const std::string spool_folder_;
   const Clock& clock_;
   jobs::Queue<ExportJob> queue_;

@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "phrenic/v1/saved.pb.h"
+#include "server/study/queue/request_size.h"
 #include "server/study/queue/run.h"
 
 namespace phrenic::study {
@@ -82,6 +83,7 @@ absl::StatusOr<Studies::Draft> Studies::MakeDraft(const v1::CreateStudyRequest& 
                                                   const std::string& owner) const {
   const char* kind = KindOf(request);
   if (kind == nullptr) return absl::InvalidArgumentError(kNoStudy);
+  if (absl::Status small = CheckSize(request); !small.ok()) return small;
   const absl::StatusOr<std::string> scene = scene_name_(request);
   if (!scene.ok()) return scene.status();
   Draft draft;

@@ -65,7 +65,8 @@ class Studies {
                std::map<std::string, absl::Status>& lost);
 
   // Queues a study and returns after the store has written it to disk. An empty id is derived from kind and scene.
-  // INVALID_ARGUMENT if the request names no kind; the errors of SceneName and jobs::Queue::Add.
+  // INVALID_ARGUMENT if the request names no kind; the errors of CheckSize, SceneName and
+  // jobs::Queue::Add.
   absl::StatusOr<v1::Study> Add(const v1::CreateStudyRequest& request, const std::string& owner);
   // The same as the methods of jobs::Queue; List leaves out the results.
   absl::StatusOr<Seen> Wait(const std::string& id, std::int64_t seen, absl::Duration longest) const {
