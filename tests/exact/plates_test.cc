@@ -54,6 +54,9 @@ std::vector<double> ErrorsOfSquare(double disorder, bool clamped) {
 }
 
 TEST(SquarePlate, ClampedConvergesToTheSeries) {
+#ifdef PHRENIC_SANITIZED
+  GTEST_SKIP() << "the Release build runs it; the supported plate takes the same way";
+#endif
   for (const double disorder : {0.0, 0.2}) {
     const auto errors = ErrorsOfSquare(disorder, true);
     ReportErrors(disorder > 0 ? "clamped, irregular" : "clamped, regular", errors);
