@@ -58,8 +58,7 @@ absl::Status CheckField(const LungsOptions& options) {
   for (const char* ending : {".vti", ".nii", ".nii.gz"}) {
     if (absl::EndsWith(options.field, ending)) return absl::OkStatus();
   }
-  return absl::InvalidArgumentError(
-      absl::StrCat("--grid ", options.field, ": the formats are .vti, .nii and .nii.gz"));
+  return absl::InvalidArgumentError(absl::StrCat("--grid ", options.field, ": the formats are .vti, .nii and .nii.gz"));
 }
 
 absl::StatusOr<std::shared_ptr<const Model>> CompileLungs(const Context& context, const LungsOptions& options) {

@@ -34,7 +34,8 @@ class UpstreamCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc
   struct Handlers {
     // Returns true to read the next message at once; after false the owner calls ReadNext.
     std::function<bool(const grpc::ByteBuffer& message)> message;
-    // Called last. Only Cancel may be called afterwards, without effect. Called exactly once, also after an error, a timeout or Cancel.
+    // Called last. Only Cancel may be called afterwards, without effect. Called exactly once, also after an error, a
+    // timeout or Cancel.
     std::function<void(const grpc::Status& status)> done;
   };
 
