@@ -10,7 +10,7 @@ namespace phrenic::session {
 namespace {
 
 // States of waiting exports, in scenes of --max-vertices.
-constexpr std::int64_t kScenesOfOwner = 2, kScenesInAll = 4;
+constexpr std::int64_t kExportsOfOwner = 2, kExportsInAll = 4;
 
 }  // namespace
 
@@ -51,7 +51,7 @@ absl::Status Exports::CheckVertices(const Model& model, const std::string& owner
   const std::int64_t own = 1 + open(List([&owner](const std::string& other) { return other == owner; }));
   const std::int64_t all = 1 + open(List());
   const std::int64_t each = model.rest.cols();
-  if (own * each <= kScenesOfOwner * vertices_ && all * each <= kScenesInAll * vertices_) return absl::OkStatus();
+  if (own * each <= kExportsOfOwner * vertices_ && all * each <= kExportsInAll * vertices_) return absl::OkStatus();
   return absl::ResourceExhaustedError(
       absl::StrCat("too many exports wait for one more of ", each,
                    " vertices; wait until one has ended, or start the server with a larger --max-vertices"));
