@@ -72,7 +72,7 @@ run_stages() {
   mkdir -p "$results"
   for name in "$@"; do
     say "Stage $name ($(($# - ${#left[@]} + 1)) of $#): $(about "$name"). About $(time_left "${left[@]}") left."
-    if [[ $name =~ ^(tests|e2e)$ && -z $beside ]]; then begin_beside "${left[@]}"; fi
+    if [[ $name == tests && -z $beside ]]; then begin_beside "${left[@]}"; fi
     run_stage "$name"
     left=("${left[@]:1}")
   done
@@ -96,7 +96,7 @@ note_time() {
   summary+=("$(printf '%-12s %-7s %5d s' "$1" "$2" "$3")")
 }
 
-# --- beside: compilation runs at the lowest priority while tests wait for clocks and browsers ---
+# --- beside: compilation runs at the lowest priority while tests wait ---
 beside=
 # The checks of a stage that compile and run nothing.
 compiled_by() {
@@ -128,6 +128,15 @@ begin_beside() {
   set +m
 }
 
+# pause_beside and resume_beside: browsers draw too slowly beside compilers, also beside those of the lowest priority.
+pause_beside() {
+  if [[ -n $beside ]]; then kill -STOP -- "-$beside" 2>/dev/null || true; fi
+}
+
+resume_beside() {
+  if [[ -n $beside ]]; then kill -CONT -- "-$beside" 2>/dev/null || true; fi
+}
+
 # beside NAME runs check_NAME, or waits for begin_beside if that has started it.
 beside() {
   local name=$1
@@ -145,6 +154,7 @@ finish() {
   local status=$?
   trap - EXIT
   if [[ -n $beside ]]; then kill -- "-$beside" 2>/dev/null || true; fi
+  resume_beside # what is paused ends only then
   if [[ $status -ne 0 ]]; then count 0 1; fi
   note_time "all" "" "$SECONDS"
   report
@@ -232,7 +242,9 @@ stage_web() {
 }
 
 stage_e2e() {
+  pause_beside
   vitest e2e e2e
+  resume_beside
 }
 
 stage_browser() {
