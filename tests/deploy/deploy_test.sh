@@ -116,6 +116,11 @@ checks_run_beside_tests() {
   local output
   output=$(in_checks eval 'trap finish EXIT; run_stages tests tidy')
   expect ChecksBesideTestsCount "$output" "tidy at priority 19" "2 passed, 1 failed"
+  output=$(in_checks eval 'vitest() { ps -o stat= -p "$beside"; }
+    check_tidy() { sleep 3; }
+    check_warnings() { true; }
+    begin_beside tidy; stage_e2e; ps -o stat= -p "$beside"; trap finish EXIT')
+  expect_equal TheyPauseWhileBrowsersDraw "$(head -2 <<<"$output" | cut -c1 | tr -d '\n' | tr RSD r)" Tr
   expect_equal WithoutTestsTheyRunAlone "$(in_checks run_stages tidy | grep -c 'priority 19')" 0
 }
 
