@@ -1,6 +1,7 @@
 #include "server/study/cost_budget.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "absl/strings/str_format.h"
 
@@ -12,7 +13,7 @@ void CostBudget::Cut(const std::string& what, double takes) {
   notes_.push_back(
       absl::StrFormat("%s: it takes about %.0f s, and the study has %.0f s in all (most_seconds); set "
                       "most_seconds to about %.0f",
-                      what, takes, seconds_, seconds_ + takes));
+                      what, std::ceil(takes), seconds_, std::ceil(seconds_ + takes)));
 }
 
 }  // namespace phrenic::study
