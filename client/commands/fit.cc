@@ -5,12 +5,16 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "client/cli/argument_kinds.h"
 #include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
 #include "client/connection/errors.h"
 #include "client/files/motion_vectors.h"
+#include "client/files/person_file.h"
 #include "client/files/scene_lungs.h"
 #include "client/files/whole_file.h"
 #include "client/print/motion_fit.h"
@@ -35,7 +39,8 @@ struct FitCommandOptions {
   std::vector<std::string> landmarks, exhale;
   std::optional<double> descent, tidal_volume;  // [mm], [l]
   fit::FitOptions fit;
-  std::string data_dir, residuals, expected;  // files; empty: none
+  bool show_landmarks = false;                       // in the scene
+  std::string data_dir, residuals, expected, out;  // files; empty: none
 };
 
 int FailFit(const Context& context, const absl::Status& status) { return Fail(context, service::ToGrpc(status)); }
@@ -60,9 +65,9 @@ int RegisterPerson(const Context& context, const RegisterOptions& options) {
   if (!points.ok()) return Fail(points.status());
   const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
   if (!scene.ok()) return Fail(scene.status());
-  const auto templates = ReadSceneLungs(*scene, options.data_dir);
-  if (!templates.ok()) return FailFit(context, templates.status());
-  const auto registered = WithProgress("registering", [&] { return fit::RegisterLungs(*templates, points->exhale); });
+  const auto lungs = ReadSceneLungs(*scene, options.data_dir);
+  if (!lungs.ok()) return FailFit(context, lungs.status());
+  const auto registered = WithProgress("registering", [&] { return fit::RegisterLungs(lungs->templates, points->exhale); });
   if (!registered.ok()) return FailFit(context, registered.status());
   PrintDoubts(*registered);
   if (context.json()) {
@@ -73,7 +78,7 @@ int RegisterPerson(const Context& context, const RegisterOptions& options) {
     PrintRegistration(*registered);
   }
   if (options.out.empty()) return kOk;
-  const absl::Status written = WriteLungs(options.out, *templates, *registered);
+  const absl::Status written = WriteLungs(options.out, lungs->templates, *registered);
   return written.ok() ? kOk : Fail(written);
 }
 
@@ -90,7 +95,19 @@ std::string FitUsageFault(const FitCommandOptions& options) {
   if (!options.landmarks.empty() && !options.expected.empty()) return "--expected belongs to --exhale";
   const bool fitting = !options.residuals.empty() || options.fit.assimilate;
   if (!options.exhale.empty() && fitting) return "--residuals and --assimilate belong to --landmarks";
+  if (options.show_landmarks && (options.out.empty() || options.landmarks.empty())) {
+    return "--show-landmarks belongs to --landmarks with --out";
+  }
+  if (options.show_landmarks && options.fit.assimilate) {
+    return "--show-landmarks shows what the numbers leave: leave --assimilate out";
+  }
   return "";
+}
+
+std::string FileNames(const std::vector<std::string>& files) {
+  std::vector<std::string> names;
+  for (const std::string& file : files) names.push_back(std::filesystem::path(file).filename().string());
+  return absl::StrJoin(names, " and ");
 }
 
 int FitLandmarks(const Context& context, const FitCommandOptions& options) {
@@ -98,12 +115,12 @@ int FitLandmarks(const Context& context, const FitCommandOptions& options) {
   if (!landmarks.ok()) return Fail(landmarks.status());
   const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
   if (!scene.ok()) return Fail(scene.status());
-  const auto templates = ReadSceneLungs(*scene, options.data_dir);
-  if (!templates.ok()) return FailFit(context, templates.status());
+  const auto lungs = ReadSceneLungs(*scene, options.data_dir);
+  if (!lungs.ok()) return FailFit(context, lungs.status());
   absl::StatusOr<fit::MotionFit> found = absl::UnknownError("");
   {
     Progress progress("fitting " + options.scene.scene, 1);
-    found = fit::FitMotion(*templates, *landmarks, options.fit, [&](double done, std::string_view stage) {
+    found = fit::FitMotion(lungs->templates, *landmarks, options.fit, [&](double done, std::string_view stage) {
       progress.SetDetail(std::string(stage));
       progress.Update(done);
       return !context.interruption->happened();
@@ -117,6 +134,12 @@ int FitLandmarks(const Context& context, const FitCommandOptions& options) {
     PrintFitCsv(*found);
   } else {
     PrintFit(*found, options.fit);
+  }
+  if (!options.out.empty()) {
+    const absl::Status status = WriteFittedScene(options.out, *lungs, *found, options.fit,
+                                                 FileNames(options.landmarks), options.show_landmarks);
+    if (!status.ok()) return Fail(status);
+    std::cerr << "wrote " << options.out << "\n";
   }
   if (options.residuals.empty()) return kOk;
   if (const absl::Status status = WriteResiduals(options.residuals, *found); !status.ok()) return Fail(status);
@@ -138,6 +161,18 @@ absl::StatusOr<Expected> Expect(const fit::Person& person, const fit::PeopleMoti
   if (!prediction.ok()) return prediction.status();
   expected.prediction = *prediction;
   return expected;
+}
+
+// Writes the expected breath as a scene, if that is asked for.
+absl::Status WriteExpectedPerson(const FitCommandOptions& options, const SceneLungs& lungs, const fit::Person& person,
+                                 const fit::Prediction& prediction) {
+  if (options.out.empty()) return absl::OkStatus();
+  const std::string number = options.descent ? absl::StrFormat("a descent of %.1f mm", *options.descent)
+                                             : absl::StrFormat("a tidal volume of %.2f l", *options.tidal_volume);
+  const absl::Status written =
+      WriteExpectedScene(options.out, lungs, person, prediction, number, FileNames(options.exhale));
+  if (written.ok()) std::cerr << "wrote " << options.out << "\n";
+  return written;
 }
 
 int PrintAndWriteExpected(const Context& context, const FitCommandOptions& options, const fit::Person& person,
@@ -163,18 +198,21 @@ int FitOneNumber(const Context& context, const FitCommandOptions& options) {
   if (!points.ok()) return Fail(points.status());
   const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
   if (!scene.ok()) return Fail(scene.status());
-  const auto templates = ReadSceneLungs(*scene, options.data_dir);
-  if (!templates.ok()) return FailFit(context, templates.status());
-  const auto registered = fit::RegisterLungs(*templates, points->exhale);
+  const auto lungs = ReadSceneLungs(*scene, options.data_dir);
+  if (!lungs.ok()) return FailFit(context, lungs.status());
+  const auto registered = fit::RegisterLungs(lungs->templates, points->exhale);
   if (!registered.ok()) return FailFit(context, registered.status());
   PrintDoubts(*registered);
   const auto person = WithProgress("solving", [&] {
-    return fit::Person::Make(*templates, *registered, fit::BreathAmplitudes(options.fit.numbers),
+    return fit::Person::Make(lungs->templates, *registered, BreathAmplitudes(options.fit.numbers),
                              options.fit.elasticity, [&] { return context.interruption->happened(); });
   });
   if (!person.ok()) return FailFit(context, person.status());
   auto expected = Expect(*person, fit::ShippedPeople(options.fit.numbers), options);
   if (!expected.ok()) return FailFit(context, expected.status());
+  if (const absl::Status status = WriteExpectedPerson(options, *lungs, *person, expected->prediction); !status.ok()) {
+    return Fail(status);
+  }
   return PrintAndWriteExpected(context, options, *person, points->exhale, *std::move(expected));
 }
 
@@ -184,6 +222,11 @@ int FitPerson(const Context& context, const FitCommandOptions& options) {
     return kUsage;
   }
   return options.landmarks.empty() ? FitOneNumber(context, options) : FitLandmarks(context, options);
+}
+
+absl::Status CheckSceneFile(const std::string& file) {
+  if (absl::EndsWith(file, ".textproto")) return absl::OkStatus();
+  return absl::InvalidArgumentError("a scene's file ends in .textproto");
 }
 
 void AddExhale(CLI::App& command, std::vector<std::string>& files, bool required) {
@@ -202,6 +245,10 @@ void AddFiles(CLI::App& command, FitCommandOptions& options) {
   command.add_option("--residuals", options.residuals, "write measured, predicted and residual vectors (.csv, .vtp)");
   command.add_option("--expected", options.expected,
                      "write the expected motion of the points and its spread (.csv, .vtp)");
+  command.add_option("--out", options.out, "write the person's lungs and breath as a scene (.textproto)")
+      ->check(ParsedBy(&CheckSceneFile));
+  command.add_flag("--show-landmarks", options.show_landmarks,
+                   "add the landmarks of the unseen half to the scene, with what the fit leaves");
 }
 
 }  // namespace

@@ -27,10 +27,10 @@ absl::StatusOr<fit::MotionStudy> RunMotionStudy(const Context& context, const Mo
   if (!cases.ok()) return cases.status();
   const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
   if (!scene.ok()) return scene.status();
-  const auto templates = ReadSceneLungs(*scene, options.data_dir);
-  if (!templates.ok()) return templates.status();
+  const auto lungs = ReadSceneLungs(*scene, options.data_dir);
+  if (!lungs.ok()) return lungs.status();
   Progress progress("fitting people", 1);
-  return fit::StudyMotion(*templates, *cases, options.fit, [&](double done, std::string_view stage) {
+  return fit::StudyMotion(lungs->templates, *cases, options.fit, [&](double done, std::string_view stage) {
     progress.SetDetail(std::string(stage));
     progress.Update(done);
     return !context.interruption->happened();

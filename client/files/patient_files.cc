@@ -1,10 +1,9 @@
 #include "client/files/patient_files.h"
 
-#include <google/protobuf/text_format.h>
-
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
+#include "client/files/scene_text.h"
 #include "client/files/whole_file.h"
 #include "client/print/output.h"
 #include "server/meshio/meshio.h"
@@ -21,12 +20,6 @@ absl::Status MakeFolder(const std::string& folder) {
   fs::create_directories(folder, error);
   if (!error) return absl::OkStatus();
   return absl::PermissionDeniedError(absl::StrCat("cannot make the folder ", folder, ": ", error.message()));
-}
-
-std::string SceneText(const v1::Scene& scene) {
-  std::string text;
-  google::protobuf::TextFormat::PrintToString(scene, &text);
-  return absl::StrCat("# proto-file: proto/phrenic/v1/scene.proto\n# proto-message: phrenic.v1.Scene\n", text);
 }
 
 }  // namespace

@@ -10,10 +10,15 @@
 
 namespace phrenic::client {
 
-// Returns the surfaces of the bodies with the anatomy of a right and a left lung, generated or read from files below
-// `data_dir`. FAILED_PRECONDITION if the scene lacks one, or a surface is not closed; the errors of
+struct SceneLungs {
+  std::array<v1::Body, 2> bodies;  // by fit::Side
+  fit::LungTemplates templates;    // their surfaces
+};
+
+// Returns the bodies with the anatomy of a right and a left lung, generated or read
+// from files below `data_dir`. FAILED_PRECONDITION if the scene lacks one, or a surface is not closed; the errors of
 // session::Models::Resolve and session::MakeMeshSource.
-absl::StatusOr<fit::LungTemplates> ReadSceneLungs(const v1::SceneSource& scene, const std::string& data_dir);
+absl::StatusOr<SceneLungs> ReadSceneLungs(const v1::SceneSource& scene, const std::string& data_dir);
 
 }  // namespace phrenic::client
 

@@ -24,7 +24,7 @@ void PrintFitCsv(const fit::MotionFit& fit);
 // The motion expected for one number, over regions of the points.
 struct Expected {
   fit::Prediction prediction;
-  std::vector<fit::Amplitude> amplitudes;
+  std::vector<Amplitude> amplitudes;
   std::vector<fit::RegionError> regions;  // motion and, as the error's mean, the spread between people
   int people = 0;                         // the prior is of
 };

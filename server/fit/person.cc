@@ -1,19 +1,6 @@
 #include "server/fit/person.h"
 
 namespace phrenic::fit {
-namespace {
-
-// Returns the displacement of the surroundings at each boundary point of a lung, per amplitude.
-Points BoundaryDisplacement(const LungTissue& tissue, Side side, const BoundaryMode& mode) {
-  Points displacement(3, tissue.points().cols());
-  for (Eigen::Index i = 0; i < displacement.cols(); ++i) {
-    displacement.col(i) = mode.displacement(
-        PlaceOf(tissue.points().col(i), tissue.normals().col(i), tissue.box().min(), tissue.box().max(), side));
-  }
-  return displacement;
-}
-
-}  // namespace
 
 absl::StatusOr<RegisteredLungs> RegisterLungs(const LungTemplates& templates, const Points& exhale) {
   const absl::StatusOr<LungSides> sides = FindSides(exhale);
@@ -47,7 +34,7 @@ absl::StatusOr<Person> Person::Make(const LungTemplates& templates, const Regist
       Points& field = person.fields_[side].emplace_back(3, 0);
       if (!person.Moves(a, side)) continue;
       const BoundaryMode& mode = BoundaryModes()[static_cast<size_t>(amplitudes[a].mode)];
-      field = person.tissues_[side].SolveVectors(BoundaryDisplacement(person.tissues_[side], side, mode));
+      field = ResponseTo(mode, person.tissues_[side], side == kLeft ? 1 : -1);
     }
   }
   return person;

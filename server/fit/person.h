@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "server/fit/boundary_modes.h"
 #include "server/fit/registration.h"
 #include "server/fit/sides.h"
+#include "server/mechanics/lungs/boundary_modes.h"
 #include "server/mechanics/lungs/lung_tissue.h"
 
 namespace phrenic::fit {

@@ -64,6 +64,33 @@ TEST(Fit, OfOneNumberExpectsAMotionWithItsSpread) {
   EXPECT_NEAR(inverse.json()["descent_mm"], 13, 0.05);
 }
 
+TEST(Fit, WritesASceneThatRunsAndCanBeFittedAgain) {
+  const std::string pairs = WriteScratch("pairs.csv", EggPerson(700)), scene = Scratch("anna.textproto");
+  const Outcome fit = FitCommand({"--landmarks", pairs, "--out", scene, "--show-landmarks", "-o", "json"});
+  ASSERT_EQ(fit.code, 0) << fit.err;
+  EXPECT_THAT(ReadAll(scene), HasSubstr("# Written by phrenic fit"));
+  const Outcome run = Phrenic({"run", scene, "--preset", "bases-alone", "--seconds", "2", "-o", "json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Outcome again = Phrenic({"fit", scene, "--landmarks", pairs, "-o", "json"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  const double error = fit.json()["held_out_mean_mm"], error_again = again.json()["held_out_mean_mm"];
+  EXPECT_NEAR(error_again, error, 0.1 * error) << "its lungs are near the person's already";
+}
+
+TEST(Fit, OfOneNumberWritesASceneToo) {
+  const std::string points = WriteScratch("exhale.csv", EggPerson(500)), scene = Scratch("expected.textproto");
+  const Outcome fit = FitCommand({"--exhale", points, "--tidal-volume", "0.4", "--out", scene});
+  ASSERT_EQ(fit.code, 0) << fit.err;
+  const Outcome run = Phrenic({"run", scene, "--seconds", "2", "-o", "json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  double gain = 0;
+  const auto json = run.json();
+  for (const auto& measure : json["measures"]) {
+    if (measure["name"] == "lung volume") gain = measure["maximum"].get<double>() - measure["minimum"].get<double>();
+  }
+  EXPECT_NEAR(gain, 0.0004, 0.00005) << json["measures"];
+}
+
 TEST(Fit, InvalidRequestsNameTheOptionOrTheRemedy) {
   const std::string points = WriteScratch("exhale.csv", EggPerson(500));
   const auto expect = [](std::vector<std::string> more, int code, const std::string& text) {
@@ -77,6 +104,8 @@ TEST(Fit, InvalidRequestsNameTheOptionOrTheRemedy) {
   expect({"--exhale", points, "--descent", "9", "--tidal-volume", "0.4"}, 2, "--exhale needs one number");
   expect({"--exhale", points, "--descent", "-3"}, 2, "--descent");
   expect({"--exhale", points, "--descent", "3", "--assimilate"}, 2, "belong to --landmarks");
+  expect({"--landmarks", points, "--out", "x.stl"}, 2, ".textproto");
+  expect({"--landmarks", points, "--show-landmarks"}, 2, "--show-landmarks");
   expect({"--landmarks", points, "--modes", "9"}, 2, "--modes");
   expect({"--landmarks", WriteScratch("bad.csv", "a,b\n1,2\n")}, 1, "bad.csv:1: the first line must name the columns");
   expect({"--landmarks", Scratch("none.csv")}, 1, "check the path");

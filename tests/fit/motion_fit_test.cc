@@ -160,7 +160,7 @@ TEST(BoundaryPlace, HasWeightsThatAddToOne) {
   const Eigen::Vector3d low(-1, -1, -1), high(1, 1, 1);
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d normal = Eigen::Vector3d(std::sin(i), std::cos(3 * i), std::sin(7 * i + 1)).normalized();
-    const BoundaryPlace place = PlaceOf({0.1, 0.2, -0.7}, normal, low, high, kLeft);
+    const BoundaryPlace place = PlaceOf({0.1, 0.2, -0.7}, normal, {low, high}, 1);
     EXPECT_NEAR(place.base + place.costal + place.medial, 1, 1e-12);
     EXPECT_GE(std::min({place.base, place.costal, place.medial}), -1e-12);
   }

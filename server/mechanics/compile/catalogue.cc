@@ -28,6 +28,7 @@
 #include "server/mechanics/measures/highest.h"
 #include "server/mechanics/measures/volume.h"
 #include "server/mechanics/motions/insertion.h"
+#include "server/mechanics/motions/lung_modes.h"
 #include "server/mechanics/motions/oscillation.h"
 #include "server/mechanics/motions/ribs.h"
 #include "server/mechanics/motions/sternum.h"
@@ -121,6 +122,8 @@ absl::Status AddMotion(const v1::Motion& scene, std::string_view path, ModelBuil
       return AddSkins(scene.skin(), scene.name(), In(path, "skin"), builder);
     case v1::Motion::kInsertion:
       return Add(Insertion::Make(scene.insertion(), scene.name(), In(path, "insertion"), builder), builder);
+    case v1::Motion::kLungModes:
+      return Add(LungModes::Make(scene.lung_modes(), scene.name(), In(path, "lung_modes"), builder), builder);
     case v1::Motion::KIND_NOT_SET:
       break;
   }

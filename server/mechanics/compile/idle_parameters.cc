@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <initializer_list>
 
+#include "server/mechanics/lungs/mode_parameters.h"
+
 namespace phrenic {
 namespace {
 
@@ -40,6 +42,9 @@ void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
   idle_unless(thorax, {"airway_resistance", "lung_compliance", "abdominal_compliance", "abdominal_load",
                        "airway_pressure", "ventilator_pressure", "airway_closed", "trapped_air", "pneumothorax_right",
                        "pneumothorax_left", "pleural_fluid_right", "pleural_fluid_left", "posture"});
+  if (!Any(scene.motions(), [](const v1::Motion& motion) { return motion.has_lung_modes(); })) {
+    for (const ModeParameter& parameter : ModeParameters()) report.add_idle_parameters(parameter.name);
+  }
   idle_unless(muscle || has_line(v1::SIDE_RIGHT), {"right_activation"});
   idle_unless(muscle || has_line(v1::SIDE_LEFT), {"left_activation"});
   idle_unless(scene.breath().waveform() == v1::WAVEFORM_RAISED_COSINE, {"inspiratory_share", "pause_share"});

@@ -140,6 +140,13 @@ absl::StatusOr<Mesh> MakeShape(const v1::Body& body, const MeshSource& source, c
   absl::StatusOr<Mesh> mesh = UncheckedShape(body, source, stop);
   if (stop.Stopped()) return stop.status();
   if (!mesh.ok()) return InBody(body, mesh.status());
+  if (body.has_scale()) {
+    const Eigen::Vector3d scale = ToEigen(body.scale());
+    if (!(scale.array() >= 0.001 && scale.array() <= 1000).all()) {
+      return InBody(body, absl::InvalidArgumentError("scale: each axis needs a factor from 0.001 to 1000"));
+    }
+    mesh->vertices.array().colwise() *= scale.array();
+  }
   mesh->vertices.colwise() += ToEigen(body.offset());
   if (absl::Status status = Validate(*mesh); !status.ok()) return InBody(body, status);
   if (const double largest = mesh->vertices.cwiseAbs().maxCoeff(); largest > kMaxCoordinate) {

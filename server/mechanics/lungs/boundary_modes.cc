@@ -1,9 +1,9 @@
-#include "server/fit/boundary_modes.h"
+#include "server/mechanics/lungs/boundary_modes.h"
 
 #include <algorithm>
 #include <array>
 
-namespace phrenic::fit {
+namespace phrenic {
 namespace {
 
 using Vector = Eigen::Vector3d;
@@ -13,9 +13,6 @@ double SmoothStep(double x, double from, double to) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }
-
-constexpr int kPiston = 0, kTiltFrontBack = 1, kTiltLeftRight = 2, kPump = 3, kApex = 4, kMediastinum = 5,
-              kMediastinumTilt = 6, kBack = 7, kLowPump = 8, kDome = 9;
 
 const std::array<BoundaryMode, 10> kModes = {{
     {"piston", "the base descends", [](const Place& p) { return Vector(0, 0, -p.base); }},
@@ -48,10 +45,10 @@ void AddPerLung(int mode, std::vector<Amplitude>& amplitudes) {
 
 }  // namespace
 
-BoundaryPlace PlaceOf(const Vector& point, const Vector& normal, const Vector& low, const Vector& high, Side side) {
-  const Vector at = (2 * point - low - high).cwiseQuotient(high - low);
+BoundaryPlace PlaceOf(const Vector& point, const Vector& normal, const Eigen::AlignedBox3d& box, double outwards) {
+  const Vector at = (2 * point - box.min() - box.max()).cwiseQuotient(box.sizes());
   Place place = {};
-  place.outwards = side == kLeft ? 1 : -1;
+  place.outwards = outwards;
   place.xi = at.x() * place.outwards;
   place.eta = at.y();
   place.zeta = (at.z() + 1) / 2;
@@ -62,6 +59,15 @@ BoundaryPlace PlaceOf(const Vector& point, const Vector& normal, const Vector& l
 }
 
 std::span<const BoundaryMode> BoundaryModes() { return kModes; }
+
+Points ResponseTo(const BoundaryMode& mode, const LungTissue& tissue, double outwards) {
+  Points displacement(3, tissue.points().cols());
+  for (Eigen::Index i = 0; i < displacement.cols(); ++i) {
+    displacement.col(i) =
+        mode.displacement(PlaceOf(tissue.points().col(i), tissue.normals().col(i), tissue.box(), outwards));
+  }
+  return tissue.SolveVectors(displacement);
+}
 
 std::string Amplitude::Name() const {
   const std::string name = kModes[static_cast<size_t>(mode)].name;
@@ -80,4 +86,4 @@ std::vector<Amplitude> BreathAmplitudes(int count) {
   return amplitudes;
 }
 
-}  // namespace phrenic::fit
+}  // namespace phrenic

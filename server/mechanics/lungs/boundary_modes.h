@@ -7,17 +7,17 @@
 //   (1 - zeta), back +y, apex -z clip((zeta - 0.6)/0.4, 0, 1) on the costal side; mediastinum towards the middle, and
 //   its tilt times eta, on the medial side.
 // Source: ../shared/motion.md, chosen on ten people's CT and checked on others.
-#ifndef PHRENIC_SERVER_FIT_BOUNDARY_MODES_H_
-#define PHRENIC_SERVER_FIT_BOUNDARY_MODES_H_
+#ifndef PHRENIC_SERVER_MECHANICS_LUNGS_BOUNDARY_MODES_H_
+#define PHRENIC_SERVER_MECHANICS_LUNGS_BOUNDARY_MODES_H_
 
 #include <Eigen/Core>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "server/fit/sides.h"
+#include "server/mechanics/lungs/lung_tissue.h"
 
-namespace phrenic::fit {
+namespace phrenic {
 
 // A point of a lung's surface.
 struct BoundaryPlace {
@@ -26,8 +26,9 @@ struct BoundaryPlace {
   double outwards;              // x of the lateral direction: +1 left, -1 right
 };
 
-BoundaryPlace PlaceOf(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, const Eigen::Vector3d& low,
-                      const Eigen::Vector3d& high, Side side);
+// Requires: outwards is +1 for a left lung and -1 for a right one.
+BoundaryPlace PlaceOf(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, const Eigen::AlignedBox3d& box,
+                      double outwards);
 
 struct BoundaryMode {
   const char* name;  // "tilt-front-back"
@@ -35,8 +36,25 @@ struct BoundaryMode {
   Eigen::Vector3d (*displacement)(const BoundaryPlace&);  // per amplitude
 };
 
+// Their indices.
+enum BoundaryModeIndex : int {
+  kPiston,
+  kTiltFrontBack,
+  kTiltLeftRight,
+  kPump,
+  kApex,
+  kMediastinum,
+  kMediastinumTilt,
+  kBack,
+  kLowPump,
+  kDome
+};
+
 // Returns all of them; they live as long as the program.
 std::span<const BoundaryMode> BoundaryModes();
+
+// Returns the displacement of the nodes of a lung's grid (3 x nodes) per amplitude of the mode [1]: 4 ms.
+Points ResponseTo(const BoundaryMode& mode, const LungTissue& tissue, double outwards);
 
 // A number that is fitted: the amplitude of a mode in both lungs, or in one.
 struct Amplitude {
@@ -49,6 +67,6 @@ struct Amplitude {
 // Returns the 8 or 12 numbers of a breath. Requires: `count` is 8 or 12.
 std::vector<Amplitude> BreathAmplitudes(int count);
 
-}  // namespace phrenic::fit
+}  // namespace phrenic
 
-#endif  // PHRENIC_SERVER_FIT_BOUNDARY_MODES_H_
+#endif  // PHRENIC_SERVER_MECHANICS_LUNGS_BOUNDARY_MODES_H_

@@ -1,0 +1,47 @@
+#include "client/files/person_file.h"
+
+#include <filesystem>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/files/scene_text.h"
+#include "client/files/whole_file.h"
+#include "server/fit/person_scene.h"
+
+namespace phrenic::client {
+namespace {
+
+constexpr int kMostLandmarks = 400;
+
+std::string SceneNameOf(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
+}  // namespace
+
+absl::Status WriteFittedScene(const std::string& file, const SceneLungs& lungs, const fit::MotionFit& fit,
+                              const fit::FitOptions& options, const std::string& source, bool landmarks) {
+  const std::vector<Amplitude> amplitudes = BreathAmplitudes(options.numbers);
+  const std::string description = absl::StrFormat(
+      "A person's lungs and breath: %d numbers fitted to half of %d landmark pairs (%s), off by %.2f mm at the rest.",
+      options.numbers, fit.exhale.cols(), source, 1e3 * fit.held_out.mean);
+  v1::Scene scene = fit::PersonScene({SceneNameOf(file), description, lungs.bodies, fit.registered,
+                                      fit::PresetsOf(fit, amplitudes)},
+                                     lungs.templates);
+  if (landmarks) fit::AddLandmarks(fit, kMostLandmarks, scene);
+  const std::string command = absl::StrCat("Written by phrenic fit with --landmarks ", source, " --modes ",
+                                           options.numbers, " --split ", options.split, ".");
+  return WriteWhole(file, SceneText(scene, command));
+}
+
+absl::Status WriteExpectedScene(const std::string& file, const SceneLungs& lungs, const fit::Person& person,
+                                const fit::Prediction& prediction, const std::string& number,
+                                const std::string& source) {
+  const std::string title = "Expected of people";
+  const v1::Preset preset = fit::BreathPreset("expected", title, absl::StrCat("The mean breath of people with ", number, "."),
+                                              person.amplitudes(), prediction.amplitudes);
+  const std::string description = absl::StrCat("A person's lungs with the breath that ", number, " leads to expect.");
+  const v1::Scene scene =
+      fit::PersonScene({SceneNameOf(file), description, lungs.bodies, person.registered(), {preset}}, lungs.templates);
+  return WriteWhole(file, SceneText(scene, absl::StrCat("Written by phrenic fit with --exhale ", source, ".")));
+}
+
+}  // namespace phrenic::client

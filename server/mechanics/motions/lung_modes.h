@@ -1,0 +1,48 @@
+// Lungs of elastic tissue whose walls move by a few boundary modes:
+//   x = x0 + s sum_m a_m u_m(x0),  v = s' sum_m a_m u_m(x0)   [m], [m/s],
+// with a_m the live parameters lung_* [m], s the breath's signal times breath_force [1], and u_m the response of the
+// elastic, sliding tissue to mode m (lungs/boundary_modes.h, lungs/lung_tissue.h). The responses are solved once, when
+// the scene is compiled; a step costs a product of 3 n x 12. A change of a parameter moves the lungs at once: v leaves
+// its rate out.
+#ifndef PHRENIC_SERVER_MECHANICS_MOTIONS_LUNG_MODES_H_
+#define PHRENIC_SERVER_MECHANICS_MOTIONS_LUNG_MODES_H_
+
+#include <vector>
+
+#include "server/mechanics/lungs/mode_parameters.h"
+#include "server/mechanics/model_builder.h"
+
+namespace phrenic {
+
+class LungModes final : public Motion {
+ public:
+  // Drives every vertex of the bodies: sets their inverse mass to 0. INVALID_ARGUMENT if a body is not deformable, a
+  // lung has no anatomy of a lung with a side or no closed surface that faces outwards, or two bodies are of one side.
+  static absl::StatusOr<std::unique_ptr<Motion>> Make(const v1::LungModes& scene, const std::string& name,
+                                                      std::string_view path, ModelBuilder& builder);
+
+  void Drive(const EvalContext& at, State& state) const override;
+
+ private:
+  using Responses = Eigen::Matrix<double, Eigen::Dynamic, kModeParameters>;  // row 3 i + axis of vertex i [1]
+
+  // The vertices of a body.
+  struct Moved {
+    int first;  // simulated vertex
+    Points rest;
+    Responses responses;
+  };
+  struct Lung;
+
+  explicit LungModes(std::string name) : Motion(std::move(name)) {}
+  // Adds the body, each vertex with the tissue of the lung that holds it or is nearest.
+  void Add(int body, const std::vector<Lung>& lungs, Model& model);
+  static absl::StatusOr<std::vector<Lung>> Solve(const Names& names, std::string_view path,
+                                                 const ModelBuilder& builder);
+
+  std::vector<Moved> moved_;
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_MOTIONS_LUNG_MODES_H_
