@@ -39,7 +39,7 @@ struct FitCommandOptions {
   std::vector<std::string> landmarks, exhale;
   std::optional<double> descent, tidal_volume;  // [mm], [l]
   fit::FitOptions fit;
-  bool show_landmarks = false;                       // in the scene
+  bool show_landmarks = false;                     // in the scene
   std::string data_dir, residuals, expected, out;  // files; empty: none
 };
 
@@ -67,7 +67,8 @@ int RegisterPerson(const Context& context, const RegisterOptions& options) {
   if (!scene.ok()) return Fail(scene.status());
   const auto lungs = ReadSceneLungs(*scene, options.data_dir);
   if (!lungs.ok()) return FailFit(context, lungs.status());
-  const auto registered = WithProgress("registering", [&] { return fit::RegisterLungs(lungs->templates, points->exhale); });
+  const auto registered =
+      WithProgress("registering", [&] { return fit::RegisterLungs(lungs->templates, points->exhale); });
   if (!registered.ok()) return FailFit(context, registered.status());
   PrintDoubts(*registered);
   if (context.json()) {
@@ -136,8 +137,8 @@ int FitLandmarks(const Context& context, const FitCommandOptions& options) {
     PrintFit(*found, options.fit);
   }
   if (!options.out.empty()) {
-    const absl::Status status = WriteFittedScene(options.out, *lungs, *found, options.fit,
-                                                 FileNames(options.landmarks), options.show_landmarks);
+    const absl::Status status = WriteFittedScene(options.out, *lungs, *found, options.fit, FileNames(options.landmarks),
+                                                 options.show_landmarks);
     if (!status.ok()) return Fail(status);
     std::cerr << "wrote " << options.out << "\n";
   }

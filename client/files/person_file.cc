@@ -23,9 +23,8 @@ absl::Status WriteFittedScene(const std::string& file, const SceneLungs& lungs, 
   const std::string description = absl::StrFormat(
       "A person's lungs and breath: %d numbers fitted to half of %d landmark pairs (%s), off by %.2f mm at the rest.",
       options.numbers, fit.exhale.cols(), source, 1e3 * fit.held_out.mean);
-  v1::Scene scene = fit::PersonScene({SceneNameOf(file), description, lungs.bodies, fit.registered,
-                                      fit::PresetsOf(fit, amplitudes)},
-                                     lungs.templates);
+  v1::Scene scene = fit::PersonScene(
+      {SceneNameOf(file), description, lungs.bodies, fit.registered, fit::PresetsOf(fit, amplitudes)}, lungs.templates);
   if (landmarks) fit::AddLandmarks(fit, kMostLandmarks, scene);
   const std::string command = absl::StrCat("Written by phrenic fit with --landmarks ", source, " --modes ",
                                            options.numbers, " --split ", options.split, ".");
@@ -36,8 +35,9 @@ absl::Status WriteExpectedScene(const std::string& file, const SceneLungs& lungs
                                 const fit::Prediction& prediction, const std::string& number,
                                 const std::string& source) {
   const std::string title = "Expected of people";
-  const v1::Preset preset = fit::BreathPreset("expected", title, absl::StrCat("The mean breath of people with ", number, "."),
-                                              person.amplitudes(), prediction.amplitudes);
+  const v1::Preset preset =
+      fit::BreathPreset("expected", title, absl::StrCat("The mean breath of people with ", number, "."),
+                        person.amplitudes(), prediction.amplitudes);
   const std::string description = absl::StrCat("A person's lungs with the breath that ", number, " leads to expect.");
   const v1::Scene scene =
       fit::PersonScene({SceneNameOf(file), description, lungs.bodies, person.registered(), {preset}}, lungs.templates);

@@ -41,7 +41,8 @@ absl::StatusOr<SceneLungs> ReadSceneLungs(const v1::SceneSource& source, const s
   absl::StatusOr<Mesh> right = ReadLung(*right_body, meshes), left = ReadLung(*left_body, meshes);
   if (!right.ok()) return right.status();
   if (!left.ok()) return left.status();
-  return SceneLungs{{*right_body, *left_body}, {fit::LungTemplate(*std::move(right)), fit::LungTemplate(*std::move(left))}};
+  return SceneLungs{{*right_body, *left_body},
+                    {fit::LungTemplate(*std::move(right)), fit::LungTemplate(*std::move(left))}};
 }
 
 }  // namespace phrenic::client

@@ -12,7 +12,8 @@ std::string SceneText(const v1::Scene& scene, const std::string& comment) {
   printer.SetUseUtf8StringEscaping(true);
   std::string text;
   printer.PrintToString(scene, &text);
-  const std::string head = comment.empty() ? "" : absl::StrCat("# ", absl::StrReplaceAll(comment, {{"\n", "\n# "}}), "\n");
+  const std::string head =
+      comment.empty() ? "" : absl::StrCat("# ", absl::StrReplaceAll(comment, {{"\n", "\n# "}}), "\n");
   return absl::StrCat("# proto-file: proto/phrenic/v1/scene.proto\n# proto-message: phrenic.v1.Scene\n", head, text);
 }
 

@@ -143,8 +143,8 @@ std::vector<v1::Preset> PresetsOf(const MotionFit& fit, const std::vector<Amplit
                       1e3 * fit.descent),
       amplitudes, fit.descent * ShippedPeople(numbers).mean));
   presets.push_back(BreathPreset("bases-alone", "Bases alone",
-                                 "Only the lungs' bases move, as by the diaphragm: the tissue above follows.", amplitudes,
-                                 PartOf(amplitudes, fitted, true)));
+                                 "Only the lungs' bases move, as by the diaphragm: the tissue above follows.",
+                                 amplitudes, PartOf(amplitudes, fitted, true)));
   presets.push_back(BreathPreset("walls-alone", "Walls alone",
                                  "Only the chest wall and the mediastinum move: the bases stay where they are.",
                                  amplitudes, PartOf(amplitudes, fitted, false)));

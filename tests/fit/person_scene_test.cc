@@ -28,7 +28,10 @@ class PersonSceneTest : public testing::Test {
     return *fit;
   }
   static v1::Scene Scene() {
-    return PersonScene({"anna", "A person made up.", {LungBody(kRight), LungBody(kLeft)}, Fitted().registered,
+    return PersonScene({"anna",
+                        "A person made up.",
+                        {LungBody(kRight), LungBody(kLeft)},
+                        Fitted().registered,
                         PresetsOf(Fitted(), BreathAmplitudes(8))},
                        GeneratedLungs());
   }

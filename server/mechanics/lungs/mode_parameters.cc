@@ -6,7 +6,7 @@ namespace {
 using Fields = v1::Parameters;
 
 #define PHRENIC_MODE(name, mode, right, left) \
-  ModeParameter { #name, {mode, right, left}, &Fields::name, &Fields::set_##name }
+  ModeParameter { #name, {mode, right, left }, &Fields::name, &Fields::set_##name }
 
 }  // namespace
 

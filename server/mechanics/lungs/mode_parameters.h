@@ -1,5 +1,5 @@
-// The live parameters of a lung's boundary modes: "lung_piston_right" and the others of Parameters, one per mode, or one
-// per lung where people's lungs differ.
+// The live parameters of a lung's boundary modes: "lung_piston_right" and the others of Parameters, one per mode, or
+// one per lung where people's lungs differ.
 #ifndef PHRENIC_SERVER_MECHANICS_LUNGS_MODE_PARAMETERS_H_
 #define PHRENIC_SERVER_MECHANICS_LUNGS_MODE_PARAMETERS_H_
 

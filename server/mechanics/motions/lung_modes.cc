@@ -41,8 +41,8 @@ absl::StatusOr<std::vector<LungModes::Lung>> LungModes::Solve(const Names& names
     if (!lungs.empty() && lungs.front().outwards == *outwards) return FieldError(path, "two lungs are of one side");
     auto tissue = LungTissue::Make(builder.model.bodies[body].mesh, {}, builder.stop);
     if (!tissue.ok()) {
-      return FieldError(path, absl::StrCat("body \"", builder.model.bodies[body].name, "\": ",
-                                           std::string(tissue.status().message())));
+      return FieldError(path, absl::StrCat("body \"", builder.model.bodies[body].name,
+                                           "\": ", std::string(tissue.status().message())));
     }
     Lung& lung = lungs.emplace_back(Lung{*std::move(tissue), *outwards, {}});
     for (const ModeParameter& parameter : ModeParameters()) {
@@ -95,7 +95,8 @@ absl::StatusOr<std::unique_ptr<Motion>> LungModes::Make(const v1::LungModes& sce
   };
   if (absl::Status status = add(scene.lungs(), field + ".lungs"); !status.ok()) return status;
   if (absl::Status status = add(scene.inside(), field + ".inside"); !status.ok()) return status;
-  builder.ReportElement("motion", motion->name(), vertices, "vertices", absl::StrCat(kModeParameters, " boundary modes"));
+  builder.ReportElement("motion", motion->name(), vertices, "vertices",
+                        absl::StrCat(kModeParameters, " boundary modes"));
   return motion;
 }
 

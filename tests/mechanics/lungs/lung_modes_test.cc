@@ -14,8 +14,9 @@ namespace {
 using testing::HasSubstr;
 
 std::string Lung(const std::string& name, const std::string& side, double x) {
-  return "bodies { name: '" + name + "' layer: 'lungs' role: ROLE_DEFORMABLE mass: 0.5 anatomy { structure: " +
-         "STRUCTURE_LUNG side: SIDE_" + side + " } ellipsoid { centre { x: " + std::to_string(x) +
+  return "bodies { name: '" + name +
+         "' layer: 'lungs' role: ROLE_DEFORMABLE mass: 0.5 anatomy { structure: " + "STRUCTURE_LUNG side: SIDE_" +
+         side + " } ellipsoid { centre { x: " + std::to_string(x) +
          " } radii { x: 0.05 y: 0.08 z: 0.12 } divisions: 10 } } ";
 }
 
@@ -37,8 +38,7 @@ TEST(LungModes, MoveNothingWithoutAnAmplitudeOrABreath) {
 }
 
 TEST(LungModes, AreLinearInAmplitudeAndForce) {
-  const Points piston = Displacement(Lungs("lung_piston_right: 0.02")),
-               pump = Displacement(Lungs("lung_pump: 0.01")),
+  const Points piston = Displacement(Lungs("lung_piston_right: 0.02")), pump = Displacement(Lungs("lung_pump: 0.01")),
                both = Displacement(Lungs("lung_piston_right: 0.04 lung_pump: 0.03")),
                stronger = Displacement(Lungs("lung_pump: 0.01 breath_force: 3"));
   EXPECT_GT(piston.norm(), 0.01);
@@ -56,8 +56,9 @@ TEST(LungModes, OfOneSideMoveThatLungAlone) {
 }
 
 TEST(LungModes, OfBothLungsAreMirrorImages) {
-  const auto model = CompileText(Lungs(
-      "lung_piston_right: 0.02 lung_piston_left: 0.02 lung_mediastinum: 0.01 lung_tilt_left_right: 0.01 lung_dome: 0.01"));
+  const auto model =
+      CompileText(Lungs("lung_piston_right: 0.02 lung_piston_left: 0.02 lung_mediastinum: 0.01 lung_tilt_left_right: "
+                        "0.01 lung_dome: 0.01"));
   const Points moved = RunTo(*model, 2, 0.01).x - model->rest;
   const Eigen::Index half = moved.cols() / 2;
   double worst = 0;
