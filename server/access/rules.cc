@@ -64,6 +64,7 @@ constexpr Rule kRules[] = {
     {"StudyService.DeleteStudy", kNone, kNone, kChanges},
     {"StudyService.GetStudyPage", kNone, kNone, kReads},
     {"StudyService.CheckPhysiology", kOwner, kNone, kReads},
+    {"StudyService.RunBatch", kOwner, kNone, kReads},
 };
 
 constexpr std::string_view kRoleNames[] = {"", "viewer", "controller", "owner", "admin"};

@@ -7,6 +7,7 @@
 #include "server/schema/part_of.h"
 #include "server/service/calls/status.h"
 #include "server/service/study_page.h"
+#include "server/study/batch/run_all.h"
 
 namespace phrenic::service {
 StudyService::StudyService(session::Models& models, std::string web_root, AccessGuard& guard, const Clock& clock,
@@ -16,6 +17,7 @@ StudyService::StudyService(session::Models& models, std::string web_root, Access
       guard_(guard),
       checks_(
           {"physiology checks", "--max-exports, --max-share", limits.exports, PartOf(limits.exports, limits.share)}),
+      batches_({"batches", "--max-exports, --max-share", limits.exports, PartOf(limits.exports, limits.share)}),
       studies_(
           [this](const v1::CreateStudyRequest& request) -> absl::StatusOr<std::string> {
             const auto scene = models_.Resolve(request.source());
@@ -36,6 +38,7 @@ void StudyService::AddTo(CallTable& calls) {
   calls.Add(Lane::kSession, *this, &StudyService::DeleteStudy);
   calls.Add(Lane::kQuick, *this, &StudyService::GetStudyPage);
   calls.Add(Lane::kWork, *this, &StudyService::CheckPhysiology);
+  calls.Add(Lane::kWork, *this, &StudyService::RunBatch);
 }
 
 void StudyService::Restore(const std::vector<store::SavedRecord>& records, std::map<std::string, absl::Status>& lost) {
@@ -125,6 +128,28 @@ grpc::Status StudyService::CheckPhysiology(grpc::CallbackServerContext* context,
   *response.mutable_table() = *table;
   writer->Write(response);
   return grpc::Status::OK;
+}
+
+grpc::Status StudyService::RunBatch(grpc::CallbackServerContext* context, const v1::RunBatchRequest* request,
+                                    ReplyStream<v1::RunBatchResponse>* writer) {
+  const auto caller = guard_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  const auto running = batches_.Take(guard_.ShareOf(*caller));
+  if (!running.ok()) return ToGrpc(running.status());
+  const auto compile = [&](const v1::SceneSource& source) {
+    return models_.Get(source, guard_.RequesterOf(*caller, *context));
+  };
+  const auto batch = study::Batch::Make(*request, compile);
+  if (!batch.ok()) return ToGrpc(batch.status());
+  if (absl::Status status = writer->Reserve(batch->ResultBytes()); !status.ok()) return ToGrpc(status);
+  v1::RunBatchResponse response;
+  *response.mutable_header() = batch->Header();
+  if (!writer->Write(response)) return ToGrpc(absl::CancelledError("the caller has gone"));
+  const auto take = [&](v1::BatchResult result) {
+    *response.mutable_result() = std::move(result);
+    return writer->Write(response);
+  };
+  return ToGrpc(study::RunAll(*batch, take, [&] { return context->IsCancelled(); }));
 }
 
 }  // namespace phrenic::service

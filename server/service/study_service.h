@@ -54,12 +54,15 @@ class StudyService final {
   // time, or above a caller's share.
   grpc::Status CheckPhysiology(grpc::CallbackServerContext* context, const v1::CheckPhysiologyRequest* request,
                                ReplyStream<v1::CheckPhysiologyResponse>* writer);
+  // The same limits, of their own. Runs on threads of its own; the handler's writes the results.
+  grpc::Status RunBatch(grpc::CallbackServerContext* context, const v1::RunBatchRequest* request,
+                        ReplyStream<v1::RunBatchResponse>* writer);
 
  private:
   session::Models& models_;
   const std::string web_root_;
   AccessGuard& guard_;
-  FairShare checks_;  // of physiology, that run; held by the handler
+  FairShare checks_, batches_;  // of physiology, and batches, that run; held by the handler
   // Last: its thread uses the members above.
   study::Studies studies_;
 };

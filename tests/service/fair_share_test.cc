@@ -238,6 +238,22 @@ TEST_F(TwoAccounts, ShareChecksOfPhysiology) {
   EXPECT_TRUE(check("modest").ok());
 }
 
+TEST_F(TwoAccounts, ShareBatches) {
+  v1::RunBatchRequest request;
+  request.mutable_source()->set_name("cube-springs");
+  request.set_seconds(3600);
+  request.set_frames_per_second(0.001);
+  request.add_runs();
+  const auto run = [&](const std::string& account) {
+    return Keep(v1::StudyService::NewStub(channel_), &v1::StudyService::Stub::RunBatch, account, request);
+  };
+  ASSERT_TRUE(run("greedy").ok());
+  const grpc::Status status = run("greedy");
+  EXPECT_EQ(status.error_code(), grpc::RESOURCE_EXHAUSTED);
+  EXPECT_THAT(status.error_message(), HasSubstr("--max-share"));
+  EXPECT_TRUE(run("modest").ok());
+}
+
 // Join links of one session.
 TEST_F(TwoAccounts, LinksShareTheSeatsOfASession) {
   const auto links = v1::AccessService::NewStub(channel_);

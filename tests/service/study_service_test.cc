@@ -1,4 +1,6 @@
 // StudyService over a socket.
+#include <set>
+
 #include "phrenic/v1/study.grpc.pb.h"
 #include "tests/service/server_fixture.h"
 
@@ -88,6 +90,40 @@ TEST_F(Studies, HaveNoPageBeforeTheyAreDone) {
             grpc::StatusCode::FAILED_PRECONDITION);
   EXPECT_EQ(Call(*stub_, &v1::StudyService::Stub::GetStudyPage, R"(study_id: "none")", &page).error_code(),
             grpc::StatusCode::NOT_FOUND);
+}
+
+TEST_F(Studies, RunBatchesThatStreamEachResult) {
+  v1::RunBatchRequest request;
+  request.mutable_source()->set_name("cube-springs");
+  request.set_seconds(0.2);
+  for (int i = 0; i < 5; ++i) request.add_runs()->mutable_parameters()->set_breath_force(i);
+  grpc::ClientContext context;
+  const auto reader = stub_->RunBatch(&context, request);
+  v1::RunBatchResponse response;
+  ASSERT_TRUE(reader->Read(&response));
+  EXPECT_TRUE(response.has_header());
+  std::set<int> runs;
+  while (reader->Read(&response)) {
+    runs.insert(response.result().run());
+    EXPECT_EQ(response.result().times_size(), 4);
+  }
+  EXPECT_TRUE(reader->Finish().ok());
+  EXPECT_EQ(runs.size(), 5u);
+}
+
+TEST_F(Studies, RefuseBatchesByTheField) {
+  const auto refused = [&](const v1::RunBatchRequest& request) {
+    grpc::ClientContext context;
+    const auto reader = stub_->RunBatch(&context, request);
+    v1::RunBatchResponse response;
+    EXPECT_FALSE(reader->Read(&response));
+    return reader->Finish();
+  };
+  v1::RunBatchRequest request;
+  request.mutable_source()->set_name("cube-springs");
+  EXPECT_THAT(refused(request).error_message(), HasSubstr("runs"));
+  request.add_runs()->mutable_parameters()->set_breath_force(-1);
+  EXPECT_THAT(refused(request).error_message(), HasSubstr("runs[0].parameters.breath_force: -1 is outside 0 to 20"));
 }
 
 }  // namespace

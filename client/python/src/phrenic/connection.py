@@ -7,7 +7,7 @@ import os
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Optional, TypeVar, Union
+from typing import Any, Iterator, Optional, TypeVar, Union
 
 import grpc
 
@@ -171,3 +171,14 @@ class Connection(Channel):
         for message in answer:
             call.each(message)
         return None
+
+    def stream(self, call: Call) -> Iterator[Any]:
+        """Yields the messages of a streaming call as they come; the server waits while none is taken. A loop that breaks
+        ends the call. Nothing is repeated after a lost connection."""
+        messages = self.open(call, call.deadline)
+        try:
+            yield from messages
+        except grpc.RpcError as failed:
+            raise error_of(failed) from None
+        finally:
+            messages.cancel()

@@ -1,4 +1,4 @@
-"""Many runs of one scene at different parameters, side by side.
+"""Many runs of one scene at different parameters, on the server's threads.
 
 >>> runs = batch("cube-springs", [{"breath_force": force} for force in (1, 2)], seconds=0.1, fps=20, threads=2)
 >>> [(run.index, run.parameters, len(run.times), run.diverged) for run in sorted(runs, key=lambda run: run.index)]
@@ -7,18 +7,21 @@
 
 from __future__ import annotations
 
-import os
-from collections import deque
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
-from typing import Any, Iterable, Iterator, Mapping, Optional
+from itertools import count, islice
+from typing import Any, Iterable, Iterator, Mapping, Optional, Sequence
 
 import numpy as np
 
-from .errors import OutOfRange
-from .operations import Scene
+from .call import Call
+from .errors import InvalidArgument
+from .frame import Frame, State, vectors
+from .operations import Scene, parameters_of, parts_of, source_of
 from .server import Server, default_server
-from .session import Session
+from .v1 import batch_pb2, state_pb2
+
+BLOCK = 256
+"""Runs of one request."""
 
 
 @dataclass(frozen=True)
@@ -29,13 +32,17 @@ class Run:
     """Its place among the parameters."""
     parameters: Mapping[str, Any]
     times: np.ndarray
-    """Simulated times of the frames [s]."""
+    """Simulated times of the samples [s]."""
     measures: dict[str, np.ndarray]
     """Each measure at these times, in its SI unit."""
     state_hash: str
-    """Of the last frame."""
+    """Of the state at the last sample: that of a session with the same parameters."""
     diverged: str
-    """When, where and why the run diverged; empty if it did not. The arrays end before."""
+    """When, where and why the run diverged, or was cut short; empty if it was not. The arrays end before."""
+    state: Optional[State] = None
+    """At the last sample, the parts that `read` names."""
+    cpu_seconds: float = 0
+    """CPU time of the run."""
 
 
 def batch(
@@ -45,44 +52,84 @@ def batch(
     seconds: float,
     fps: float = 20,
     preset: str = "",
+    resolution_mm: Optional[float] = None,
+    start: Optional[Frame] = None,
+    read: Sequence[str] = (),
     threads: Optional[int] = None,
     server: Optional[Server] = None,
 ) -> Iterator[Run]:
     """Runs the scene once for each set of live parameters and yields each run as it ends. `threads` runs are in progress
-    at a time (default: one a core); no more than these are in memory, and `parameters` may be endless. The runs are the
-    same, bit for bit, at any number of threads. A loop that breaks takes the runs in progress to their end and begins no
-    more. Errors other than a divergence end the batch."""
+    at a time (default: one a core of the server). `parameters` may be endless: 256 of them are taken at a time. The runs
+    are the same, bit for bit, at any number of threads. `start`: a frame of a session of this scene, with "positions",
+    "velocities" and "scalars", from which every run goes on; default: the scene's start. `read`: parts of the last state,
+    "positions", "velocities" and "scalars". A loop that breaks ends the runs in progress."""
     host = server or default_server()
-    waiting = enumerate(parameters)
-    running: deque[Future[Run]] = deque()
-    count = threads or os.cpu_count() or 1
-    with ThreadPoolExecutor(count, "phrenic-batch") as pool:
-        while True:
-            for index, values in waiting:
-                running.append(pool.submit(_run, index, values, scene, seconds, fps, preset, host))
-                if len(running) >= count:
-                    break
-            if not running:
-                return
-            wait(running, return_when=FIRST_COMPLETED)
-            done = next(each for each in running if each.done())
-            running.remove(done)
-            yield done.result()
+    request = batch_pb2.RunBatchRequest(
+        source=source_of(scene, resolution_mm), preset=preset, seconds=seconds, frames_per_second=fps,
+        threads=threads or 0, read=_parts(read),
+    )  # fmt: skip
+    first = _arrays_of(start) if start is not None else None
+    values = iter(parameters)
+    for begin in count(0, BLOCK):
+        block = list(islice(values, BLOCK))
+        if not block:
+            return
+        del request.runs[:]
+        for each in block:
+            request.runs.add(parameters=parameters_of(each), start=first)
+        yield from _run(host, request, begin, block)
+
+
+def _parts(read: Sequence[str]) -> tuple[int, ...]:
+    if "bodies" in read:
+        raise InvalidArgument('read: "bodies" come with frames of a session; name "positions"')
+    return parts_of(tuple(read))
+
+
+def _arrays_of(frame: Frame) -> state_pb2.StateArrays:
+    """Returns the state of a frame as the server takes it."""
+    state = frame.state
+    if state.positions is None or state.velocities is None or state.scalars is None or state.scalar_rates is None:
+        raise InvalidArgument('start: the frame lacks a part: read ("positions", "velocities", "scalars")')
+    return state_pb2.StateArrays(
+        tick=state.tick, time=state.time, phase=state.phase, positions=state.positions.tobytes(),
+        velocities=state.velocities.tobytes(), scalars=state.scalars.tobytes(),
+        scalar_rates=state.scalar_rates.tobytes(),
+    )  # fmt: skip
 
 
 def _run(
-    index: int, values: Mapping[str, Any], scene: Scene, seconds: float, fps: float, preset: str, server: Server
+    host: Server, request: batch_pb2.RunBatchRequest, begin: int, block: Sequence[Mapping[str, Any]]
+) -> Iterator[Run]:
+    header = batch_pb2.BatchHeader()
+    for message in host.connection.stream(Call("StudyService.RunBatch", request)):
+        if message.HasField("header"):
+            header = message.header
+        else:
+            yield _run_of(message.result, header, begin, block, bool(request.read))
+
+
+def _run_of(
+    result: batch_pb2.BatchResult,
+    header: batch_pb2.BatchHeader,
+    begin: int,
+    block: Sequence[Mapping[str, Any]],
+    has_state: bool,
 ) -> Run:
-    times: list[float] = []
-    measures: dict[str, list[float]] = {}
-    state_hash = diverged = ""
-    with Session(scene, set=values, preset=preset, server=server) as session:
-        try:
-            for frame in session.play(seconds, fps, read=()):
-                times.append(frame.time)
-                for name, value in frame.measures.items():
-                    measures.setdefault(name, []).append(value)
-                state_hash = frame.state_hash
-        except OutOfRange as error:
-            diverged = error.message
-    return Run(index, values, np.array(times), {k: np.array(v) for k, v in measures.items()}, state_hash, diverged)
+    times = np.array(result.times)
+    table = np.array(result.measures).reshape(len(times), -1) if header.measures else np.empty((len(times), 0))
+    measures = {name: table[:, column] for column, name in enumerate(header.measures)}
+    state = _state_of(result.state, header.layout) if has_state else None
+    return Run(begin + result.run, block[result.run], times, measures, result.state_hash, result.problem, state,
+               result.cpu_seconds)  # fmt: skip
+
+
+def _state_of(arrays: state_pb2.StateArrays, layout: state_pb2.StateLayout) -> State:
+    def numbers(data: bytes, width: int = 3) -> Optional[np.ndarray]:
+        return vectors(data, "<f8", width) if data else None
+
+    scalars, rates = numbers(arrays.scalars, 1), numbers(arrays.scalar_rates, 1)
+    return State(
+        arrays.tick, arrays.time, arrays.phase, numbers(arrays.positions), numbers(arrays.velocities),
+        None if scalars is None else scalars[:, 0], None if rates is None else rates[:, 0], layout,
+    )  # fmt: skip

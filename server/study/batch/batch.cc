@@ -1,0 +1,196 @@
+#include "server/study/batch/batch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/mechanics/measures/readings.h"
+#include "server/schema/schema.h"
+#include "server/schema/thread_cpu.h"
+#include "server/stream/state_arrays.h"
+#include "server/study/batch/start_state.h"
+#include "server/study/subject.h"
+#include "server/study/watched_run.h"
+
+namespace phrenic::study {
+namespace {
+
+// Prefixes the message of an error.
+absl::Status InField(const std::string& path, const absl::Status& status) {
+  return {status.code(), absl::StrCat(path, status.message())};
+}
+
+// Returns the steps at which samples are taken, from the start: those whose end is nearest to each sample's time, each
+// once, the last one at the end of the run.
+std::vector<std::int64_t> SampledTicks(double seconds, double samples_per_second, double dt) {
+  std::vector<std::int64_t> ticks;
+  const std::int64_t samples = std::max<std::int64_t>(1, std::llround(seconds * samples_per_second));
+  for (std::int64_t i = 1; i <= samples; ++i) {
+    const double steps = static_cast<double>(i) / (samples_per_second * dt);
+    const std::int64_t tick = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::nearbyint(steps)));
+    if (ticks.empty() || tick > ticks.back()) ticks.push_back(tick);
+  }
+  return ticks;
+}
+
+// Sets the numbers that the request leaves out. Parameters stay: those not set are the scene's.
+void SetDefaults(v1::RunBatchRequest& request) {
+  v1::RunBatchRequest defaults;
+  schema::FillDefaults(&defaults);
+  if (!request.has_seconds()) request.set_seconds(defaults.seconds());
+  if (!request.has_frames_per_second()) request.set_frames_per_second(defaults.frames_per_second());
+  if (!request.has_threads()) request.set_threads(defaults.threads());
+  if (!request.has_most_seconds_a_run()) request.set_most_seconds_a_run(defaults.most_seconds_a_run());
+}
+
+// Takes the samples of one run.
+class Sampler {
+ public:
+  Sampler(const Subject& subject, std::vector<std::int64_t> ticks, std::int64_t start, v1::BatchResult& result)
+      : subject_(subject),
+        work_(subject.model->MakeWorkspace()),
+        ticks_(std::move(ticks)),
+        start_(start),
+        result_(result) {}
+
+  void Look(const State& state) {
+    if (next_ == ticks_.size() || state.tick - start_ < ticks_[next_]) return;
+    ++next_;
+    result_.add_times(state.time);
+    const EvalContext at = MakeEvalContext(*subject_.model, subject_.parameters, state, work_.scratch);
+    for (const v1::MeasureReading& reading : ReadMeasures(*subject_.model, at)) result_.add_measures(reading.value());
+    last_ = state;
+  }
+
+  // Returns the state of the last sample, or `otherwise` if there was none.
+  const State& LastOr(const State& otherwise) const { return next_ > 0 ? last_ : otherwise; }
+  double Seconds() const { return static_cast<double>(ticks_.back()) * subject_.parameters.time_step(); }
+
+ private:
+  const Subject& subject_;
+  Workspace work_;
+  std::vector<std::int64_t> ticks_;
+  std::int64_t start_;
+  v1::BatchResult& result_;
+  size_t next_ = 0;
+  State last_;
+};
+
+// Returns why a run ended early; empty if it did not.
+std::string ProblemOf(const WatchedRun& run, double most_cpu) {
+  if (run.cut) return absl::StrFormat("took more than %g s of CPU time, at %.6g s", most_cpu, run.simulated_s);
+  if (run.status.ok()) return "";
+  return absl::StrFormat("diverged at %.6g s at %s: %s", run.divergence.time(), Where(run.divergence),
+                         run.divergence.remedy());
+}
+
+}  // namespace
+
+Batch::Batch(v1::RunBatchRequest request, std::shared_ptr<const Model> model)
+    : request_(std::move(request)), model_(std::move(model)), layout_(*model_) {}
+
+absl::StatusOr<Batch> Batch::Make(v1::RunBatchRequest request, const Compiler& compile) {
+  if (request.runs_size() > kMostBatchRuns) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("runs: %d are more than %d: send several requests", request.runs_size(), kMostBatchRuns));
+  }
+  if (absl::Status status = stream::CheckParts(request.read()); !status.ok()) return status;
+  auto model = compile(request.source());
+  if (!model.ok()) return model.status();
+  SetDefaults(request);
+  Batch batch(std::move(request), *std::move(model));
+  if (absl::Status status = batch.Check(); !status.ok()) return status;
+  return batch;
+}
+
+double Batch::CountSamples() const { return request_.seconds() * request_.frames_per_second(); }
+
+absl::Status Batch::Check() const {
+  const double numbers = CountSamples() * static_cast<double>(model_->measures.size() + 1);
+  if (numbers > kMostSampledNumbers) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("frames_per_second: a run of %g s gives %.3g numbers, more than %.3g: lower it, or the seconds",
+                        request_.seconds(), numbers, kMostSampledNumbers));
+  }
+  for (int run = 0; run < size(); ++run) {
+    if (absl::Status status = CheckRun(run); !status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Batch::CheckRun(int run) const {
+  const absl::StatusOr<Subject> subject = SubjectOf(run);
+  if (!subject.ok()) return subject.status();
+  return request_.runs(run).has_start() ? StartOf(run, subject->parameters).status() : absl::OkStatus();
+}
+
+absl::StatusOr<Subject> Batch::SubjectOf(int run) const {
+  v1::Parameters parameters = request_.parameters();
+  parameters.MergeFrom(request_.runs(run).parameters());
+  const auto compiled = [this](const v1::SceneSource&) -> absl::StatusOr<std::shared_ptr<const Model>> {
+    return model_;
+  };
+  absl::StatusOr<Subject> subject = MakeSubject(request_.source(), request_.preset(), parameters, compiled);
+  if (subject.ok() || !absl::IsInvalidArgument(subject.status())) return subject;
+  return InField(absl::StrCat("runs[", run, "]: "), subject.status());
+}
+
+absl::StatusOr<State> Batch::StartOf(int run, const v1::Parameters& parameters) const {
+  if (!request_.runs(run).has_start()) return model_->InitialState();
+  return StartState(*model_, parameters, request_.runs(run).start(), absl::StrCat("runs[", run, "].start"));
+}
+
+int Batch::threads() const {
+  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int wanted = request_.threads() > 0 ? request_.threads() : cores;
+  return std::min({wanted, cores, size()});
+}
+
+v1::BatchHeader Batch::Header() const {
+  v1::BatchHeader header;
+  for (const auto& measure : model_->measures) {
+    header.add_measures(measure->name());
+    header.add_units(measure->unit());
+  }
+  if (request_.read().empty()) return header;
+  google::protobuf::RepeatedField<int> names;
+  names.Add(v1::STATE_PART_LAYOUT);
+  auto arrays = stream::MakeStateArrays(*model_, layout_, model_->InitialState(), names);
+  if (arrays.ok()) header.mutable_layout()->Swap(arrays->mutable_layout());
+  return header;
+}
+
+std::size_t Batch::ResultBytes() const {
+  const double samples = sizeof(double) * CountSamples() * static_cast<double>(model_->measures.size() + 1);
+  return static_cast<std::size_t>(samples) + stream::StateBytes(*model_, layout_, request_.read());
+}
+
+absl::StatusOr<v1::BatchResult> Batch::Run(int run, const std::function<bool()>& cancelled) const {
+  const absl::StatusOr<Subject> subject = SubjectOf(run);
+  if (!subject.ok()) return subject.status();
+  const absl::StatusOr<State> start = StartOf(run, subject->parameters);
+  if (!start.ok()) return start.status();
+  const double began = ThreadCpuSeconds(), dt = subject->parameters.time_step();
+  v1::BatchResult result;
+  result.set_run(run);
+  result.set_time_step(dt);
+  Sampler sampler(*subject, SampledTicks(request_.seconds(), request_.frames_per_second(), dt), start->tick, result);
+  const auto watched = Watch(
+      *subject, *start, sampler.Seconds(), dt, request_.most_seconds_a_run(),
+      [&](double, std::string_view) { return !cancelled(); }, [&](const State& state) { sampler.Look(state); });
+  if (!watched.ok()) return watched.status();
+  result.set_problem(ProblemOf(*watched, request_.most_seconds_a_run()));
+  const State& last = sampler.LastOr(*start);
+  result.set_state_hash(absl::StrFormat("%016x", StateHash(last)));
+  result.set_cpu_seconds(ThreadCpuSeconds() - began);
+  if (request_.read().empty()) return result;
+  auto arrays = stream::MakeStateArrays(*model_, layout_, last, request_.read());
+  if (!arrays.ok()) return arrays.status();
+  result.mutable_state()->Swap(&*arrays);
+  return result;
+}
+
+}  // namespace phrenic::study
