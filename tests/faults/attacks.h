@@ -43,6 +43,8 @@ Outcome IdleConnections(const Victim& victim, int times);
 // Many calls, by strangers or one account (call_attacks.cc).
 Outcome Reflection(const Victim& victim, int times);
 Outcome Physiology(const Victim& victim, int times);
+Outcome Batches(const Victim& victim, int times);
+Outcome FoldedRequests(const Victim& victim, int times);
 Outcome CompileBombs(const Victim& victim, int times);
 Outcome SlowReaders(const Victim& victim, int times);
 Outcome GreedyAccount(const Victim& victim, int times);
@@ -61,6 +63,8 @@ inline constexpr Attack kAttacks[] = {
     {"metadata", "the same, gRPC port", 600, "", false, &IllegalMetadata},
     {"reflection", "streams of reflection, left open", 130, "", false, &Reflection},
     {"physiology", "`CheckPhysiology` on one connection", 135, kNoRateLimit, false, &Physiology},
+    {"batches", "`RunBatch` of 1,000 hours on one connection", 135, kNoRateLimit, false, &Batches},
+    {"folded", "requests of 16 MB that unfold to gigabytes", 60, kNoRateLimit, false, &FoldedRequests},
     {"resets", "streams opened and reset (HTTP/2 rapid reset)", 300'000, "", true, &RapidResets},
     {"unfinished", "messages of 16 MB without their end", 200, "", true, &UnfinishedMessages},
     {"bodies", "web bodies of 31 MB without an account", 120, "", false, &LargeBodies},

@@ -1,4 +1,7 @@
 // Attacks by well-formed calls: too many, too large, never read.
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+#include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/support/async_stream.h>
 
 #include <algorithm>
@@ -7,6 +10,7 @@
 #include <thread>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "absl/time/clock.h"
 #include "phrenic/v1/export.grpc.pb.h"
 #include "phrenic/v1/frames.grpc.pb.h"
@@ -82,6 +86,19 @@ grpc::Status CreateExport(const Victim& victim, v1::ExportService::Stub& stub, c
   return stub.CreateExport(&context, request, &response);
 }
 
+// Returns a field of a message or text on the wire.
+std::string Field(int number, const std::string& content) {
+  std::string bytes;
+  {
+    google::protobuf::io::StringOutputStream stream(&bytes);
+    google::protobuf::io::CodedOutputStream out(&stream);
+    out.WriteTag(static_cast<std::uint32_t>(number) << 3 | 2);
+    out.WriteVarint64(content.size());
+    out.WriteString(content);
+  }
+  return bytes;
+}
+
 // True if a viewer gets a frame.
 bool SeesAFrame(const Victim& victim, const std::string& account, const std::string& session) {
   grpc::ClientContext context;
@@ -108,6 +125,40 @@ Outcome Physiology(const Victim& victim, int times) {
   v1::CheckPhysiologyRequest request;
   request.mutable_source()->set_name("thorax");
   return HoldCalls(victim, times, "/phrenic.v1.StudyService/CheckPhysiology", "greedy", &request, 8);
+}
+
+Outcome Batches(const Victim& victim, int times) {
+  v1::RunBatchRequest request;
+  request.mutable_source()->set_name("cube-springs");
+  request.set_seconds(3600);
+  request.set_frames_per_second(0.001);
+  for (int i = 0; i < 1000; ++i) request.add_runs();
+  return HoldCalls(victim, times, "/phrenic.v1.StudyService/RunBatch", "greedy", &request, 8);
+}
+
+// Scenes of eight million empty bodies: 16 MB on the wire, gigabytes if they were parsed.
+Outcome FoldedRequests(const Victim& victim, int times) {
+  const std::string request =
+      Field(1, Field(2, absl::StrReplaceAll(std::string(8'000'000, 'b'), {{"b", Field(5, "")}})));
+  const grpc::Slice slice(request);
+  const grpc::ByteBuffer bytes(&slice, 1);
+  grpc::GenericStub stub(victim.NewChannel());
+  grpc::CompletionQueue queue;
+  Outcome outcome;
+  for (int i = 0; i < times && victim.Continues(); ++i) {
+    grpc::ClientContext context;
+    victim.Sign("greedy", context, 20);
+    const auto call = stub.PrepareUnaryCall(&context, "/phrenic.v1.SceneService/DescribeScene", bytes, &queue);
+    grpc::ByteBuffer answer;
+    grpc::Status status;
+    void* tag = nullptr;
+    bool ok = false;
+    call->StartCall();
+    call->Finish(&answer, &status, nullptr);
+    queue.Next(&tag, &ok);
+    CountCall(status, outcome);
+  }
+  return outcome;
 }
 
 // Callers that leave after a second, while another account describes and creates small scenes.
