@@ -66,6 +66,8 @@ std::string PartOf(const v1::Motion& motion) {
       return kRibs;
     case v1::Motion::kOscillation:
       return "oscillation";
+    case v1::Motion::kLungModes:
+      return "lung modes";
     case v1::Motion::kSkin:
     case v1::Motion::kInsertion:  // forces need it
     case v1::Motion::KIND_NOT_SET:

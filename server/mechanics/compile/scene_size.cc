@@ -165,6 +165,9 @@ std::int64_t ElementsOf(const v1::Motion& scene, const NamedSizes& sizes) {
     case v1::Motion::kInsertion:
       return SaturatingSum(sizes.Of(scene.insertion().body()).size.vertices,
                            SaturatingProduct(9, sizes.Of(scene.insertion().wall()).size.vertices));
+    case v1::Motion::kLungModes:
+      return SaturatingProduct(12, SaturatingSum(sizes.Of(scene.lung_modes().lungs()).size.vertices,
+                                                 sizes.Of(scene.lung_modes().inside()).size.vertices));
     case v1::Motion::KIND_NOT_SET:
       break;
   }

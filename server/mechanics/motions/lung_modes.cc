@@ -8,6 +8,7 @@ namespace phrenic {
 
 // A lung's tissue and its responses.
 struct LungModes::Lung {
+  int body;
   LungTissue tissue;
   double outwards;            // +1 left, -1 right
   std::vector<Points> nodes;  // displacement of its grid's nodes per parameter [1]; empty if it does not move the lung
@@ -30,6 +31,14 @@ double DistanceFrom(const LungTissue& tissue, const Eigen::Vector3d& point) {
 
 }  // namespace
 
+const LungModes::Lung& LungModes::LungAt(const Eigen::Vector3d& point, int body, const std::vector<Lung>& lungs) {
+  for (const Lung& lung : lungs) {
+    if (lung.body == body) return lung;
+  }
+  const bool second = lungs.size() > 1 && DistanceFrom(lungs[1].tissue, point) < DistanceFrom(lungs[0].tissue, point);
+  return lungs[second ? 1 : 0];
+}
+
 absl::StatusOr<std::vector<LungModes::Lung>> LungModes::Solve(const Names& names, std::string_view path,
                                                               const ModelBuilder& builder) {
   const auto bodies = builder.DeformableBodies(names, path);
@@ -44,7 +53,7 @@ absl::StatusOr<std::vector<LungModes::Lung>> LungModes::Solve(const Names& names
       return FieldError(path, absl::StrCat("body \"", builder.model.bodies[body].name,
                                            "\": ", std::string(tissue.status().message())));
     }
-    Lung& lung = lungs.emplace_back(Lung{*std::move(tissue), *outwards, {}});
+    Lung& lung = lungs.emplace_back(Lung{body, *std::move(tissue), *outwards, {}});
     for (const ModeParameter& parameter : ModeParameters()) {
       if (builder.stop.Stopped()) return builder.stop.status();
       lung.nodes.emplace_back(3, 0);
@@ -56,17 +65,18 @@ absl::StatusOr<std::vector<LungModes::Lung>> LungModes::Solve(const Names& names
   return lungs;
 }
 
-void LungModes::Add(int body, const std::vector<Lung>& lungs, Model& model) {
+void LungModes::Add(int body, const std::vector<Lung>& lungs, ModelBuilder& builder) {
+  Model& model = builder.model;
   const BodyModel& added = model.bodies[body];
   const Eigen::Index n = added.mesh.vertices.cols();
-  Moved& moved = moved_.emplace_back(Moved{added.first_vertex, added.mesh.vertices, Responses::Zero(3 * n, 12)});
-  for (Eigen::Index i = 0; i < n; ++i) {
+  Moved& moved =
+      moved_.emplace_back(Moved{added.first_vertex, added.mesh.vertices, Responses::Zero(3 * n, kModeParameters)});
+  for (Eigen::Index i = 0; i < n && !builder.stop.Stopped(); ++i) {
     const Eigen::Vector3d at = moved.rest.col(i);
-    const Lung* lung = &lungs.front();
-    if (lungs.size() > 1 && DistanceFrom(lungs[1].tissue, at) < DistanceFrom(lungs[0].tissue, at)) lung = &lungs[1];
+    const Lung& lung = LungAt(at, body, lungs);
     for (Eigen::Index m = 0; m < kModeParameters; ++m) {
-      const Points& nodes = lung->nodes[static_cast<size_t>(m)];
-      if (nodes.cols() > 0) moved.responses.block<3, 1>(3 * i, m) = lung->tissue.DisplacementAt(nodes, at);
+      const Points& nodes = lung.nodes[static_cast<size_t>(m)];
+      if (nodes.cols() > 0) moved.responses.block<3, 1>(3 * i, m) = lung.tissue.DisplacementAt(nodes, at);
     }
     const int vertex = moved.first + static_cast<int>(i);
     if (model.inverse_mass[vertex] == 0) continue;
@@ -87,8 +97,8 @@ absl::StatusOr<std::unique_ptr<Motion>> LungModes::Make(const v1::LungModes& sce
     const auto bodies = builder.DeformableBodies(names, where);
     if (!bodies.ok()) return bodies.status();
     for (const int body : *bodies) {
+      motion->Add(body, *lungs, builder);
       if (builder.stop.Stopped()) return builder.stop.status();
-      motion->Add(body, *lungs, builder.model);
       vertices += motion->moved_.back().rest.cols();
     }
     return absl::OkStatus();

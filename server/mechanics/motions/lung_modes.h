@@ -35,8 +35,10 @@ class LungModes final : public Motion {
   struct Lung;
 
   explicit LungModes(std::string name) : Motion(std::move(name)) {}
-  // Adds the body, each vertex with the tissue of the lung that holds it or is nearest.
-  void Add(int body, const std::vector<Lung>& lungs, Model& model);
+  // Returns the lung that is this body, or the one that holds the point or is nearest to it.
+  static const Lung& LungAt(const Eigen::Vector3d& point, int body, const std::vector<Lung>& lungs);
+  // Adds the body, each vertex with the tissue of its lung.
+  void Add(int body, const std::vector<Lung>& lungs, ModelBuilder& builder);
   static absl::StatusOr<std::vector<Lung>> Solve(const Names& names, std::string_view path,
                                                  const ModelBuilder& builder);
 
