@@ -41,6 +41,7 @@ struct FitCommandOptions {
   fit::FitOptions fit;
   bool show_landmarks = false;                     // in the scene
   std::string data_dir, residuals, expected, out;  // files; empty: none
+  std::string source;
 };
 
 int FailFit(const Context& context, const absl::Status& status) { return Fail(context, service::ToGrpc(status)); }
@@ -105,7 +106,9 @@ std::string FitUsageFault(const FitCommandOptions& options) {
   return "";
 }
 
-std::string FileNames(const std::vector<std::string>& files) {
+// Returns what the points are of: by --source, or the files' names.
+std::string SourceOf(const FitCommandOptions& options, const std::vector<std::string>& files) {
+  if (!options.source.empty()) return options.source;
   std::vector<std::string> names;
   for (const std::string& file : files) names.push_back(std::filesystem::path(file).filename().string());
   return absl::StrJoin(names, " and ");
@@ -137,8 +140,8 @@ int FitLandmarks(const Context& context, const FitCommandOptions& options) {
     PrintFit(*found, options.fit);
   }
   if (!options.out.empty()) {
-    const absl::Status status = WriteFittedScene(options.out, *lungs, *found, options.fit, FileNames(options.landmarks),
-                                                 options.show_landmarks);
+    const absl::Status status = WriteFittedScene(options.out, *lungs, *found, options.fit,
+                                                 SourceOf(options, options.landmarks), options.show_landmarks);
     if (!status.ok()) return Fail(status);
     std::cerr << "wrote " << options.out << "\n";
   }
@@ -171,7 +174,7 @@ absl::Status WriteExpectedPerson(const FitCommandOptions& options, const SceneLu
   const std::string number = options.descent ? absl::StrFormat("a descent of %.1f mm", *options.descent)
                                              : absl::StrFormat("a tidal volume of %.2f l", *options.tidal_volume);
   const absl::Status written =
-      WriteExpectedScene(options.out, lungs, person, prediction, number, FileNames(options.exhale));
+      WriteExpectedScene(options.out, lungs, person, prediction, number, SourceOf(options, options.exhale));
   if (written.ok()) std::cerr << "wrote " << options.out << "\n";
   return written;
 }
@@ -248,6 +251,7 @@ void AddFiles(CLI::App& command, FitCommandOptions& options) {
                      "write the expected motion of the points and its spread (.csv, .vtp)");
   command.add_option("--out", options.out, "write the person's lungs and breath as a scene (.textproto)")
       ->check(ParsedBy(&CheckSceneFile));
+  command.add_option("--source", options.source, "what the points are of, for the scene (default: the files' names)");
   command.add_flag("--show-landmarks", options.show_landmarks,
                    "add the landmarks of the unseen half to the scene, with what the fit leaves");
 }

@@ -21,13 +21,13 @@ absl::Status WriteFittedScene(const std::string& file, const SceneLungs& lungs, 
                               const fit::FitOptions& options, const std::string& source, bool landmarks) {
   const std::vector<Amplitude> amplitudes = BreathAmplitudes(options.numbers);
   const std::string description = absl::StrFormat(
-      "A person's lungs and breath: %d numbers fitted to half of %d landmark pairs (%s), off by %.2f mm at the rest.",
+      "Lungs and breath of a person: %d numbers fitted to half of %d landmark pairs (%s), off by %.2f mm at the rest.",
       options.numbers, fit.exhale.cols(), source, 1e3 * fit.held_out.mean);
   v1::Scene scene = fit::PersonScene(
       {SceneNameOf(file), description, lungs.bodies, fit.registered, fit::PresetsOf(fit, amplitudes)}, lungs.templates);
   if (landmarks) fit::AddLandmarks(fit, kMostLandmarks, scene);
-  const std::string command = absl::StrCat("Written by phrenic fit with --landmarks ", source, " --modes ",
-                                           options.numbers, " --split ", options.split, ".");
+  const std::string command = absl::StrCat("Written by phrenic fit --modes ", options.numbers, " --split ",
+                                           options.split, " from landmark pairs: ", source, ".");
   return WriteWhole(file, SceneText(scene, command));
 }
 
@@ -38,10 +38,10 @@ absl::Status WriteExpectedScene(const std::string& file, const SceneLungs& lungs
   const v1::Preset preset =
       fit::BreathPreset("expected", title, absl::StrCat("The mean breath of people with ", number, "."),
                         person.amplitudes(), prediction.amplitudes);
-  const std::string description = absl::StrCat("A person's lungs with the breath that ", number, " leads to expect.");
+  const std::string description = absl::StrCat("Lungs of a person with the breath that ", number, " leads to expect.");
   const v1::Scene scene =
       fit::PersonScene({SceneNameOf(file), description, lungs.bodies, person.registered(), {preset}}, lungs.templates);
-  return WriteWhole(file, SceneText(scene, absl::StrCat("Written by phrenic fit with --exhale ", source, ".")));
+  return WriteWhole(file, SceneText(scene, absl::StrCat("Written by phrenic fit from points at end exhale: ", source, ".")));
 }
 
 }  // namespace phrenic::client

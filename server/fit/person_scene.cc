@@ -13,12 +13,16 @@ constexpr double kBall = 0.0015, kRod = 0.0006;  // radii [m]
 constexpr double kTimeStep = 0.01;               // [s]: nothing is integrated
 constexpr double kLungMass = 0.5;                // [kg]: no force acts on it
 
-double Rounded(double value, double unit) { return std::round(value / unit) * unit; }
+// Returns the number with so many digits behind the point.
+double Rounded(double value, int digits) {
+  const double parts = std::pow(10, digits);
+  return std::round(value * parts) / parts;
+}
 
-void Set(const Eigen::Vector3d& from, double unit, v1::Vector& to) {
-  to.set_x(Rounded(from.x(), unit));
-  to.set_y(Rounded(from.y(), unit));
-  to.set_z(Rounded(from.z(), unit));
+void Set(const Eigen::Vector3d& from, int digits, v1::Vector& to) {
+  to.set_x(Rounded(from.x(), digits));
+  to.set_y(Rounded(from.y(), digits));
+  to.set_z(Rounded(from.z(), digits));
 }
 
 void AddLayer(const char* name, const char* title, const char* color, double opacity, v1::Scene& scene) {
@@ -40,15 +44,15 @@ void AddLung(const v1::Body& lung, const Registration& registration, v1::Scene& 
   body.clear_material();
   body.set_mass(kLungMass);
   const Eigen::Vector3d scale = lung.has_scale() ? VectorOf(lung.scale()) : Eigen::Vector3d(1, 1, 1);
-  Set(registration.scale.cwiseProduct(scale), 1e-4, *body.mutable_scale());
-  Set(registration.scale.cwiseProduct(VectorOf(lung.offset())) + registration.shift, 1e-5, *body.mutable_offset());
+  Set(registration.scale.cwiseProduct(scale), 4, *body.mutable_scale());
+  Set(registration.scale.cwiseProduct(VectorOf(lung.offset())) + registration.shift, 5, *body.mutable_offset());
 }
 
 void AddProbe(const std::string& name, const std::string& body, const Eigen::Vector3d& at, v1::Scene& scene) {
   v1::Probe& probe = *scene.add_probes();
   probe.set_name(name);
   probe.set_body(body);
-  Set(at, 1e-4, *probe.mutable_nearest_to());
+  Set(at, 4, *probe.mutable_nearest_to());
 }
 
 // Adds probes at the middle of the base and at the top of a lung.
@@ -80,7 +84,7 @@ Eigen::VectorXd PartOf(const std::vector<Amplitude>& amplitudes, const Eigen::Ve
   return part;
 }
 
-void AddVertex(const Eigen::Vector3d& at, v1::Polyhedron& shape) { Set(at, 1e-5, *shape.add_vertices()); }
+void AddVertex(const Eigen::Vector3d& at, v1::Polyhedron& shape) { Set(at, 5, *shape.add_vertices()); }
 
 void AddTriangle(int a, int b, int c, v1::Polyhedron& shape) {
   v1::IndexTriple& triangle = *shape.add_triangles();
@@ -123,7 +127,7 @@ v1::Preset BreathPreset(const std::string& name, const std::string& title, const
   preset.set_name(name);
   preset.set_title(title);
   preset.set_description(description);
-  SetModeAmplitudes(amplitudes, values.unaryExpr([](double value) { return Rounded(value, 1e-6); }),
+  SetModeAmplitudes(amplitudes, values.unaryExpr([](double value) { return Rounded(value, 6); }),
                     *preset.mutable_parameters());
   return preset;
 }

@@ -130,7 +130,10 @@ grpc::Status SessionService::GetSession(grpc::CallbackServerContext* context, co
                                         v1::GetSessionResponse* response) {
   const auto call = AdmitToSession(guard_, table_, *context, *request);
   if (!call.ok()) return ToGrpc(call.status());
-  *response->mutable_report() = call->session->model().report;
+  const Model& model = call->session->model();
+  *response->mutable_report() = model.report;
+  *response->mutable_presets() = model.scene.presets();
+  *response->mutable_scene_parameters() = model.parameters;
   *response->mutable_session() = call->session->status();
   return grpc::Status::OK;
 }

@@ -1,7 +1,9 @@
+import { readFile, writeFile } from "node:fs/promises";
+import { join } from "node:path";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
 import { endAll, startAll, ViewerPage } from "./browser";
-import type { Server } from "./server";
+import { outFolder, type Server } from "./server";
 
 let server: Server;
 let browser: Browser;
@@ -42,6 +44,23 @@ describe("a session made in the browser", () => {
     await row.waitFor();
     return (await row.textContent()) ?? "";
   }
+});
+
+test("AFittedPersonOfNoCatalogueHasItsPresetsAndWalls", async () => {
+  const shipped = await readFile(join(import.meta.dirname, "../../server/scenes/person-2.textproto"), "utf8");
+  const file = join(outFolder, "someone.textproto");
+  await writeFile(file, shipped.replace(/"person-2"/, '"someone"'));
+  await server.phrenic("create", file, "--id", "someone", "--play");
+  const viewer = await ViewerPage.open(browser, `${server.url}?session=someone`);
+  await viewer.waitForPicture();
+  await viewer.page.click('.preset-list button:has-text("Walls alone")');
+  const piston = viewer.page.locator("#parameter-lungPistonRight");
+  await expect.poll(() => piston.inputValue()).toBe("0");
+  await viewer.page.click('.preset-list button:has-text("Fitted")');
+  await expect.poll(async () => Number(await piston.inputValue())).toBeGreaterThan(0);
+  await viewer.saveScreenshot("person");
+  expect(viewer.consoleErrors).toEqual([]);
+  await viewer.close();
 });
 
 test("ADivergedSessionShowsARemedyThatHelps", async () => {

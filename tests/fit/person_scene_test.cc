@@ -107,7 +107,7 @@ TEST_F(PersonSceneTest, HasPartsThatAddUpToTheWhole) {
   };
   const Points fitted = motion("fitted"), bases = motion("bases-alone"), walls = motion("walls-alone");
   EXPECT_GT(bases.norm(), 0.5 * fitted.norm());
-  EXPECT_GT(walls.norm(), 0.05 * fitted.norm());
+  EXPECT_GT(walls.norm(), 0.02 * fitted.norm());
   EXPECT_LT((bases + walls - fitted).norm(), 1e-9);
   EXPECT_GT((motion("expected") - fitted).norm(), 0.05 * fitted.norm());
 }

@@ -1,5 +1,6 @@
 #include "server/mechanics/motions/lung_modes.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -47,7 +48,8 @@ absl::StatusOr<std::vector<LungModes::Lung>> LungModes::Solve(const Names& names
   for (const int body : *bodies) {
     const absl::StatusOr<double> outwards = OutwardsOf(builder.model.scene.bodies(body), path);
     if (!outwards.ok()) return outwards.status();
-    if (!lungs.empty() && lungs.front().outwards == *outwards) return FieldError(path, "two lungs are of one side");
+    const auto same_side = [&](const Lung& lung) { return lung.outwards == *outwards; };
+    if (std::any_of(lungs.begin(), lungs.end(), same_side)) return FieldError(path, "two lungs are of one side");
     auto tissue = LungTissue::Make(builder.model.bodies[body].mesh, {}, builder.stop);
     if (!tissue.ok()) {
       return FieldError(path, absl::StrCat("body \"", builder.model.bodies[body].name,

@@ -15,11 +15,11 @@ import {
   Placement,
   type WatchFramesResponseSchema,
 } from "../../../web/src/gen/phrenic/v1/frames_pb";
+import type { ParametersSchema } from "../../../web/src/gen/phrenic/v1/parameters_pb";
 import type { PresetSchema } from "../../../web/src/gen/phrenic/v1/scene_pb";
 import {
   type CreateSessionRequest,
   type Pull,
-  SceneService,
   type SceneSource,
   SessionSchema,
   SessionService,
@@ -91,6 +91,7 @@ export class FakeServer {
   comparisonEvents: (ComparisonEvent | Promise<ComparisonEvent>)[] = [];
   /** Presets of the scene. */
   presets: MessageInitShape<typeof PresetSchema>[] = [];
+  sceneParameters: MessageInitShape<typeof ParametersSchema> = {};
   private emitters = new Set<(event: Event | "end") => void>();
 
   readonly api = createApi(
@@ -100,6 +101,8 @@ export class FakeServer {
           this.answer({
             session: this.session,
             report: { sceneHash: this.sceneHash },
+            presets: this.presets,
+            sceneParameters: this.sceneParameters,
           }),
         listSessions: () => this.answer({ sessions: this.sessions }),
         createSession: (request) => {
@@ -132,9 +135,6 @@ export class FakeServer {
           this.pulls.push(...pulls);
           return this.answer({ session: this.session });
         },
-      });
-      service(SceneService, {
-        describeScene: () => this.answer({ scene: { name: "thorax", presets: this.presets } }),
       });
       service(FrameService, this.streams());
       service(CompareService, this.comparing());

@@ -99,6 +99,7 @@ test("EachGroupOfParametersHasASectionUnlessNoneHasAnEffect", () => {
     "Breathing",
     "Muscles",
     "Lungs and airways",
+    "Walls of a person's lungs",
     "Posture, chest wall and abdomen",
     "Controls of the thesis",
     "Solver",

@@ -246,25 +246,24 @@ export class SessionController {
   /** Returns the initial parameters of the scene. */
   async startValues(): Promise<ParameterValues | undefined> {
     try {
-      return (await this.describeScene()).parameters;
+      return (await this.describe()).sceneParameters;
     } catch (error) {
       this.notice.set(errorText(error));
       return undefined;
     }
   }
 
-  /** Returns the scene's presets; empty for a scene that is not in the server's catalogue. */
+  /** Returns the presets of the session's scene; empty if the server does not answer. */
   async presets(): Promise<Preset[]> {
     try {
-      return (await this.describeScene()).scene?.presets ?? [];
+      return (await this.describe()).presets;
     } catch {
       return [];
     }
   }
 
-  private describeScene() {
-    const name = this.session.value?.scene ?? "";
-    return this.api.scenes.describeScene({ source: { source: { case: "name", value: name } } });
+  private describe() {
+    return this.api.sessions.getSession({ sessionId: this.sessionId });
   }
 
   private send(parameters: ParameterValues, preset = ""): Promise<void> {

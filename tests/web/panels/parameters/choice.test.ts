@@ -3,11 +3,7 @@ import { Code, ConnectError } from "@connectrpc/connect";
 import { beforeEach, describe, expect, test } from "vitest";
 import { make } from "../../../../web/src/dom/elements";
 import { Integrator, ParametersSchema } from "../../../../web/src/gen/phrenic/v1/parameters_pb";
-import {
-  DescribeSceneResponseSchema,
-  type Session,
-  SessionSchema,
-} from "../../../../web/src/gen/phrenic/v1/session_pb";
+import { type Session, SessionSchema } from "../../../../web/src/gen/phrenic/v1/session_pb";
 import { parameterSections } from "../../../../web/src/panels/parameters/parameter_sections";
 import { SessionController } from "../../../../web/src/session/session_controller";
 import { FakeClock, settle } from "../../fakes/fake_clock";
@@ -63,8 +59,7 @@ describe("a choice in the control panel", () => {
   });
 
   test("ResetsToTheValueOfTheScene", async () => {
-    server.api.scenes.describeScene = () =>
-      Promise.resolve(create(DescribeSceneResponseSchema, { parameters: using(99).parameters }));
+    server.sceneParameters = { integrator: 99 as Integrator };
     panel.querySelector<HTMLButtonElement>('[title="Reset integrator"]')!.click();
     await settle();
     expect(server.updates).toMatchObject([{ integrator: 99 }]);
