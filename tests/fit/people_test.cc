@@ -2,8 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "server/fit/motion_study.h"
+#include "server/fit/read_landmarks.h"
+#include "server/mechanics/compile/compile.h"
+#include "server/mechanics/step/step.h"
+#include "server/schema/schema.h"
 #include "tests/fit/template_lungs.h"
 
 namespace phrenic::fit {
@@ -132,6 +137,52 @@ TEST_F(FivePeople, GiveTheNumbersThatShip) {
     EXPECT_NEAR(found.spread[i], shipped.spread[i], 0.05) << i;
   }
 }
+
+// The three people that ship as scenes, by the landmarks that their fits have not seen.
+class ShippedPeople : public testing::TestWithParam<std::pair<const char*, const char*>> {
+ protected:
+  // The scene with a body that has a vertex at each point, inside the lungs.
+  static absl::StatusOr<std::shared_ptr<const Model>> CompileWith(const Points& points) {
+    const std::string file = std::string(PHRENIC_SCENES_DIR) + "/" + GetParam().first + ".textproto";
+    std::ifstream stream(file);
+    const std::string text(std::istreambuf_iterator<char>(stream), {});
+    auto scene = schema::ParseScene(file, text);
+    if (!scene.ok()) return scene.status();
+    v1::Body& body = *scene->add_bodies();
+    body.set_name("points");
+    body.set_role(v1::ROLE_DEFORMABLE);
+    for (const auto& point : points.colwise()) {
+      v1::Vector& vertex = *body.mutable_polyhedron()->add_vertices();
+      vertex.set_x(point.x()), vertex.set_y(point.y()), vertex.set_z(point.z());
+    }
+    scene->mutable_motions(0)->mutable_lung_modes()->add_inside("body:points");
+    return Compile(*scene, [](const v1::Body& lung) { return anatomy::Generate(lung.anatomy(), 6); });
+  }
+};
+
+TEST_P(ShippedPeople, MoveAsTheirLandmarksDo) {
+  const std::string file = std::string(kPeople) + "/" + GetParam().second + ".csv";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is absent: the motion of a person";
+  const auto landmarks = ReadLandmarks({file});
+  ASSERT_TRUE(landmarks.ok()) << landmarks.status();
+  const Halves halves = SplitInHalves(static_cast<int>(landmarks->size()), 1);
+  const Landmarks unseen = Select(*landmarks, halves.held_out);
+  const auto model = CompileWith(unseen.exhale);
+  ASSERT_TRUE(model.ok()) << model.status();
+  State state = (*model)->InitialState();
+  Workspace work = (*model)->MakeWorkspace();
+  for (int i = 0; i < 200; ++i) ASSERT_TRUE(Step(**model, (*model)->parameters, 0.01, state, work).ok());
+  const Points moved = (state.x - (*model)->rest).rightCols(unseen.size());
+  const double error = Summarise(unseen.motion - moved).mean, still = Summarise(unseen.motion).mean;
+  std::printf("%s: %.2f mm, without motion %.2f mm\n", GetParam().first, 1e3 * error, 1e3 * still);
+  EXPECT_LT(error, 0.0021);
+  EXPECT_LT(error, 0.35 * still);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedPeople,
+                         testing::Values(std::pair("person-1", "case1"), std::pair("person-2", "case3"),
+                                         std::pair("person-3", "case5")),
+                         [](const auto& person) { return std::string(person.param.second); });
 
 }  // namespace
 }  // namespace phrenic::fit

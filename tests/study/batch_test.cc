@@ -31,7 +31,7 @@ v1::RunBatchRequest Runs(int count) {
   v1::RunBatchRequest request;
   request.mutable_source()->set_name("row");
   request.set_seconds(0.5);
-  for (int i = 0; i < count; ++i) request.add_runs()->mutable_parameters()->set_breath_force(0.5 + i);
+  for (int i = 0; i < count; ++i) request.add_runs()->mutable_parameters()->set_breath_force(0.5 + 0.3 * i);
   return request;
 }
 
