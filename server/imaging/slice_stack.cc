@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kRounding = 0.02;  // of written positions [mm]
 constexpr double kOffGrid = 0.1;    // largest deviation from the grid, in voxels
-constexpr int kMostFewer = 4;       // the smallest gap is at most that many slices wide
 constexpr const char* kResample = "; resample the segmentation to one grid, for example in 3D Slicer";
 
 // Positions at different heights along the normal, ascending.
@@ -69,11 +68,8 @@ absl::StatusOr<double> StepOf(const std::vector<double>& gaps, double stated) {
         "it has a single slice, whose thickness is not stated; save the segmentation of the whole thorax");
   }
   const double least = SmallestGap(gaps);
-  const bool uniform = gaps.size() > 1 && *std::max_element(gaps.begin(), gaps.end()) <= (1 + kOffGrid) * least;
-  if (uniform) return least;
-  if (stated > 0 && AreMultiples(gaps, stated)) return stated;
-  for (int fewer = 1; fewer <= kMostFewer; ++fewer) {
-    if (AreMultiples(gaps, least / fewer)) return least / fewer;
+  for (const double step : {least, stated}) {
+    if (step > 0 && AreMultiples(gaps, step)) return step;
   }
   return absl::InvalidArgumentError(absl::StrCat("its slices are not equidistant: neighbours are ", least, " to ",
                                                  *std::max_element(gaps.begin(), gaps.end()), " mm apart", kResample));

@@ -22,11 +22,11 @@ struct SliceStack {
 };
 
 // Returns the stack of the slices whose first voxels are at `positions` [mm, LPS]. Positions within 0.02 mm along the
-// normal are one slice. The distance of slices is that between all neighbours if it is the same; if slices are missing,
-// `stated` [mm] (0: not stated) if all distances are multiples of it, else the largest length of which they are. The
-// step from slice to slice may be oblique to the plane (a tilted gantry). INVALID_ARGUMENT with problem and remedy if
-// the slices are not equidistant, are shifted against each other by more than a tenth of a voxel, or violate
-// kVoxelFrameRule. Requires: at least one position; an orthogonal plane. Thread-safe.
+// normal are one slice. The distance of slices is the smallest gap between neighbours if all gaps are multiples of it,
+// else `stated` [mm] (0: not stated) if they are multiples of that, or if there is a single slice. The step from slice
+// to slice may be oblique to the plane (a tilted gantry). INVALID_ARGUMENT with problem and remedy if the slices are
+// not equidistant, are shifted against each other by more than a tenth of a voxel, or violate kVoxelFrameRule.
+// Requires: at least one position; an orthogonal plane. Thread-safe.
 absl::StatusOr<SliceStack> StackSlices(const SlicePlane& plane, const std::vector<Eigen::Vector3d>& positions,
                                        double stated);
 
