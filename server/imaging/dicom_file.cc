@@ -13,11 +13,15 @@ namespace phrenic::imaging {
 namespace {
 
 constexpr std::size_t kPreamble = 128;
+constexpr Uint32 kLongestUid = 64;
 constexpr Uint32 kCopied = 4096;  // longer values stay in the file's bytes until they are asked for
 
 absl::Status CheckTransferSyntax(DcmFileFormat& file) {
+  DcmElement* element = nullptr;
   OFString uid;
-  if (file.getMetaInfo()->findAndGetOFString(DCM_TransferSyntaxUID, uid).bad() || uid.empty()) return absl::OkStatus();
+  if (file.getMetaInfo()->findAndGetElement(DCM_TransferSyntaxUID, element).bad()) return absl::OkStatus();
+  // A longer value may be missing, if it is the one where reading failed.
+  if (element->getLength() > kLongestUid || element->getOFString(uid, 0).bad() || uid.empty()) return absl::OkStatus();
   if (DcmXfer(uid.c_str()).getXfer() != EXS_Unknown) return absl::OkStatus();
   return absl::InvalidArgumentError(
       "its transfer syntax is unknown; save it as Explicit VR Little Endian, for example by gdcmconv --raw");
