@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostElements = 8'000'000;  // 100,000 frames have 5 million; one takes 300 bytes
 constexpr std::ptrdiff_t kMostStack = 256 << 10;  // [bytes]; a nested sequence takes about 1000
-constexpr double kMostSeconds = 60;               // of CPU; elements out of order take quadratic time
+constexpr double kMostSeconds = 30;               // of CPU; elements out of order take quadratic time
 constexpr std::size_t kMostInflated = std::size_t{1} << 30;
 constexpr std::size_t kDeflateRatio = 1032;  // zlib's manual
 constexpr const char* kNoSegmentation = "; no program writes a segmentation like this, export it again";

@@ -1,6 +1,8 @@
 #include "server/imaging/label_file.h"
 
+#include <filesystem>
 #include <optional>
+#include <system_error>
 
 #include "absl/strings/str_cat.h"
 #include "server/imaging/dicom_file.h"
@@ -17,7 +19,11 @@ absl::StatusOr<LabelVolume> ParseLabels(std::string_view name, std::string_view 
 absl::StatusOr<LabelVolume> ReadLabels(const std::string& path) {
   const std::optional<std::string> bytes = ReadBytes(path);
   if (bytes.has_value()) return ParseLabels(path, *bytes);
-  return absl::NotFoundError(absl::StrCat("cannot read the label volume ", path, "; check the path"));
+  std::error_code error;
+  const bool folder = std::filesystem::is_directory(path, error);
+  return absl::NotFoundError(
+      absl::StrCat("cannot read the label volume ", path,
+                   folder ? ": it is a folder; name the file of the segmentation in it" : "; check the path"));
 }
 
 }  // namespace phrenic::imaging

@@ -14,7 +14,7 @@ namespace phrenic::imaging {
 // ending. INVALID_ARGUMENT "name: ..." with problem and remedy. Thread-safe.
 absl::StatusOr<LabelVolume> ParseLabels(std::string_view name, std::string_view bytes);
 
-// Reads and parses a file. NOT_FOUND names the path.
+// Reads and parses a file. NOT_FOUND names the path, and says so if it is a folder.
 absl::StatusOr<LabelVolume> ReadLabels(const std::string& path);
 
 }  // namespace phrenic::imaging

@@ -133,10 +133,27 @@ TEST(DicomErrors, CompressedPixelsOtherThanRleAndUnknownTransferSyntaxesAreRefus
   std::string bytes = Halves().Bytes();
   const std::size_t at = bytes.find("1.2.840.10008.1.2.1", 132);
   ASSERT_NE(at, std::string::npos);
-  bytes.replace(at, 20, std::string("1.2.840.10008.1.2.5", 20));
+  bytes.replace(at, 19, "1.2.840.10008.1.2.5");
   EXPECT_THAT(ErrorOf(bytes), AnyOf(HasSubstr("PixelData"), HasSubstr("damaged"))) << "RLE without RLE data";
-  bytes.replace(at, 20, std::string("1.2.840.10008.1.2.9", 20));
+  bytes.replace(at, 19, "1.2.840.10008.1.2.9");
   EXPECT_THAT(ErrorOf(bytes), HasSubstr("transfer syntax is unknown"));
+}
+
+// Returns a file's bytes with a transfer syntax two characters longer.
+std::string WithTransferSyntax(std::string bytes, const std::string& old, const std::string& longer) {
+  const std::size_t at = bytes.find(old, 132);
+  bytes[at - 2] = static_cast<char>(bytes[at - 2] + 2);  // length of the UID, and of the group
+  bytes[140] = static_cast<char>(bytes[140] + 2);
+  return bytes.replace(at, old.size() + old.size() % 2, longer);  // with its padding
+}
+
+TEST(DicomErrors, TheCompressionThatIsNotReadIsNamed) {
+  SmallSegmentation fractions = Halves();
+  fractions.type = "FRACTIONAL";
+  fractions.bits = 8;
+  const std::string bytes =
+      WithTransferSyntax(fractions.Bytes(EXS_RLELossless), "1.2.840.10008.1.2.5", "1.2.840.10008.1.2.4.90");
+  EXPECT_THAT(ErrorOf(bytes), AllOf(HasSubstr("JPEG 2000"), HasSubstr("gdcmconv --raw")));
 }
 
 TEST(DicomErrors, EveryTruncationIsAnError) {

@@ -147,7 +147,7 @@ TEST(DicomSegmentation, AMirroredOrientationIsTheSamePatient) {
   const LabelVolume volume = Parsed(mirrored.Bytes());
   EXPECT_GT(volume.to_patient.linear().determinant(), 0);
   for (int at = 0; at < 60; ++at) {
-    const Eigen::Vector3d voxel(at % 5, at / 5 % 3, at / 15);
+    const Eigen::Vector3d voxel = Eigen::Vector3i(at % 5, at / 5 % 3, at / 15).cast<double>();
     const Eigen::Vector3d there =
         volume.to_patient.inverse() * (kFirst + Eigen::Vector3d(3 * voxel.x(), 2 * voxel.y(), kApart * voxel.z()));
     EXPECT_EQ(volume.labels[volume.Index(there.array().round().cast<int>())],

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "absl/strings/str_cat.h"
 #include "server/imaging/label_file.h"
 #include "server/imaging/label_map.h"
 #include "server/imaging/nifti.h"
@@ -53,10 +54,9 @@ TEST(Pydicom, WritesTheVoxelsAndNamesThatAreRead) {
   const std::string nifti = stem + ".nii", dicom = stem + ".dcm";
   std::ofstream(nifti, std::ios::binary) << WriteNifti(volume);
   for (const char* transfer : {"explicit", "implicit", "big", "deflated"}) {
-    ASSERT_EQ(std::system((python + PHRENIC_SOURCE_DIR "/tests/imaging/write_segmentation.py " + nifti + " " + dicom +
-                           " " + transfer)
-                              .c_str()),
-              0);
+    const std::string convert = absl::StrCat(python, PHRENIC_SOURCE_DIR "/tests/imaging/write_segmentation.py ", nifti,
+                                             " ", dicom, " ", transfer);
+    ASSERT_EQ(std::system(convert.c_str()), 0);
     const absl::StatusOr<LabelVolume> read = ReadLabels(dicom);
     ASSERT_TRUE(read.ok()) << transfer << ": " << read.status();
     EXPECT_EQ(WrongVoxels(volume, *read, map), 0U) << transfer;

@@ -14,6 +14,7 @@ using ::testing::HasSubstr;
 
 absl::StatusOr<SliceStack> StackAt(const std::vector<double>& heights, double stated = 0) {
   std::vector<Eigen::Vector3d> positions;
+  positions.reserve(heights.size());
   for (const double height : heights) positions.emplace_back(1, 2, height);
   return StackSlices({}, positions, stated);
 }
