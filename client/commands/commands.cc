@@ -72,6 +72,7 @@ constexpr Command kCommands[] = {
      Formats::kDocument,
      SetUpPatient,
      {{"phrenic patient labels.nii.gz --out data --name anna", "write surfaces, a scene and a report"},
+      {"phrenic patient seg.dcm --out data --name anna", "from a DICOM Segmentation of a hospital's archive"},
       {"phrenic patient labels.nii.gz --out data --name anna --serve", "then start a server with the viewer"}}},
     {"phantom",
      kScenes,

@@ -16,8 +16,8 @@
 #include "client/files/whole_file.h"
 #include "client/print/output.h"
 #include "client/terminal/progress.h"
+#include "server/imaging/label_file.h"
 #include "server/imaging/label_map.h"
-#include "server/imaging/nifti.h"
 #include "server/schema/id.h"
 #include "server/schema/places.h"
 #include "server/schema/schema.h"
@@ -51,7 +51,7 @@ absl::StatusOr<imaging::Patient> ReadAndMakePatient(const PatientOptions& option
   Progress progress("making " + options.name, 1);
   progress.SetDetail("reading");
   progress.Update(0);
-  const absl::StatusOr<imaging::LabelVolume> volume = imaging::ReadNifti(options.volume);
+  const absl::StatusOr<imaging::LabelVolume> volume = imaging::ReadLabels(options.volume);
   if (!volume.ok()) return volume.status();
   const imaging::PatientOptions patient = {options.name, options.edge_length, {options.vertices, options.tendon_share}};
   return imaging::MakePatient(*volume, *map, *scene_template, patient, [&](double done, std::string_view stage) {
@@ -120,7 +120,7 @@ int MakePatient(const Context& context, const PatientOptions& options) {
 
 CommandFunction SetUpPatient(CLI::App& command) {
   const auto options = std::make_shared<PatientOptions>();
-  command.add_option("VOLUME", options->volume, "labels as NIfTI (.nii, .nii.gz)")->required();
+  command.add_option("VOLUME", options->volume, "labels as NIfTI (.nii, .nii.gz) or DICOM Segmentation")->required();
   AddLabels(command, options->labels);
   command.add_option("--out", options->out, "data folder for the surfaces and the scene")->required();
   command.add_option("--name", options->name, "name of the scene: 1 to 64 of a-z, 0-9 and -")->capture_default_str();

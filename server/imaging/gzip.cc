@@ -10,6 +10,7 @@ namespace phrenic::imaging {
 namespace {
 
 constexpr int kGzip = 15 + 16;             // zlib's windowBits for the gzip format
+constexpr int kRaw = -15;                  // and for deflate data alone
 constexpr std::size_t kPortion = 1 << 18;  // output buffer [bytes]
 
 Bytef* Bytes(const char* text) { return reinterpret_cast<Bytef*>(const_cast<char*>(text)); }
@@ -17,13 +18,10 @@ Bytef* Bytes(const char* text) { return reinterpret_cast<Bytef*>(const_cast<char
 // Limits an input to what zlib's counters hold.
 uInt Portion(std::size_t bytes) { return static_cast<uInt>(std::min<std::size_t>(bytes, 1 << 30)); }
 
-}  // namespace
-
-bool IsGzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
-
-absl::StatusOr<std::string> Inflate(std::string_view name, std::string_view bytes, std::size_t max_bytes) {
+absl::StatusOr<std::string> InflateBy(int window_bits, std::string_view name, std::string_view bytes,
+                                      std::size_t max_bytes) {
   z_stream stream{};
-  inflateInit2(&stream, kGzip);
+  inflateInit2(&stream, window_bits);
   std::string out, portion(std::min(kPortion, max_bytes + 1), '\0');
   int state = Z_OK;
   while (state == Z_OK && out.size() <= max_bytes) {
@@ -39,9 +37,21 @@ absl::StatusOr<std::string> Inflate(std::string_view name, std::string_view byte
   const bool complete = out.size() > max_bytes;
   out.resize(std::min(out.size(), max_bytes));
   if (state == Z_STREAM_END || (state == Z_OK && complete)) return out;
-  return absl::InvalidArgumentError(absl::StrCat(std::string(name), ": the gzip data is ",
-                                                 state == Z_BUF_ERROR ? "truncated" : "damaged", " after ", out.size(),
-                                                 " uncompressed bytes; download the file again"));
+  return absl::InvalidArgumentError(absl::StrCat(std::string(name), ": the ", window_bits == kRaw ? "deflate" : "gzip",
+                                                 " data is ", state == Z_BUF_ERROR ? "truncated" : "damaged", " after ",
+                                                 out.size(), " uncompressed bytes; download the file again"));
+}
+
+}  // namespace
+
+bool IsGzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
+
+absl::StatusOr<std::string> Inflate(std::string_view name, std::string_view bytes, std::size_t max_bytes) {
+  return InflateBy(kGzip, name, bytes, max_bytes);
+}
+
+absl::StatusOr<std::string> InflateRaw(std::string_view name, std::string_view bytes, std::size_t max_bytes) {
+  return InflateBy(kRaw, name, bytes, max_bytes);
 }
 
 std::string Deflate(std::string_view bytes) {

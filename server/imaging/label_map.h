@@ -16,8 +16,10 @@ namespace phrenic::imaging {
 absl::StatusOr<v1::LabelMap> ReadLabelMap(const std::string& name_or_file);
 
 // Returns the map with the volume's numbers, matched by label name; the map unchanged if the volume has no names or
-// none matches.
-v1::LabelMap Resolve(const v1::LabelMap& map, const LabelVolume& volume);
+// none matches, which adds a remark. A label is known by its name, else by the words of its name in any order and case
+// ("Lung, upper lobe (left)" is lung_upper_lobe_left), else by the words of its code's meaning ("Second rib Left" is
+// rib_left_2).
+v1::LabelMap Resolve(const v1::LabelMap& map, const LabelVolume& volume, std::vector<std::string>& remarks);
 
 }  // namespace phrenic::imaging
 

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "server/imaging/gzip.h"
 #include "server/imaging/nifti_header.h"
 #include "server/meshio/bytes.h"
-#include "server/schema/file_bytes.h"
 
 namespace phrenic::imaging {
 namespace {
@@ -118,12 +116,6 @@ absl::StatusOr<LabelVolume> ParseNifti(std::string_view name, std::string_view b
   const absl::StatusOr<std::string> whole = Inflate(name, bytes, header->end() + 1);
   if (!whole.ok()) return whole.status();
   return ParsePlain(name, *whole);
-}
-
-absl::StatusOr<LabelVolume> ReadNifti(const std::string& path) {
-  const std::optional<std::string> bytes = ReadBytes(path);
-  if (bytes.has_value()) return ParseNifti(path, *bytes);
-  return absl::NotFoundError(absl::StrCat("cannot read the label volume ", path, "; check the path"));
 }
 
 std::string WriteNifti(const LabelVolume& volume) {

@@ -20,9 +20,6 @@ namespace phrenic::imaging {
 // it. INVALID_ARGUMENT "name: ..." or "name:byte N: ..." with problem and remedy.
 absl::StatusOr<LabelVolume> ParseNifti(std::string_view name, std::string_view bytes);
 
-// Reads and parses a file. NOT_FOUND names the path.
-absl::StatusOr<LabelVolume> ReadNifti(const std::string& path);
-
 // Returns an uncompressed NIfTI-1 file: uint16 voxels, sform, label names in an extension.
 std::string WriteNifti(const LabelVolume& volume);
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "server/imaging/label_volume.h"
 #include "server/meshio/bytes.h"
 
 namespace phrenic::imaging {
@@ -20,9 +21,6 @@ struct Layout {
 };
 constexpr Layout kNifti1 = {348, 344, 40, 70, 76, 108, 112, 252, 256, 268, 280, 123, false};
 constexpr Layout kNifti2 = {540, 4, 16, 12, 104, 168, 176, 344, 352, 376, 400, 500, true};
-
-constexpr std::int64_t kMaxAlong = 32767;  // voxels along an axis
-constexpr std::size_t kMaxVoxels = std::size_t{1} << 30;
 
 // Decodes header fields of either version and endianness.
 class Fields {
@@ -73,8 +71,8 @@ absl::StatusOr<Fields> Recognise(std::string_view name, std::string_view bytes) 
   }
   return absl::InvalidArgumentError(
       absl::StrCat(std::string(name),
-                   ": not a NIfTI-1 or NIfTI-2 file: its first bytes are not such a header; save the "
-                   "segmentation as .nii or .nii.gz"));
+                   ": not a NIfTI-1 or NIfTI-2 file, nor a DICOM file: its first bytes are not such a header; save the "
+                   "segmentation as .nii, .nii.gz or DICOM Segmentation"));
 }
 
 absl::Status ReadSize(const Fields& fields, NiftiHeader& header) {
@@ -158,17 +156,10 @@ absl::Status ReadOrientation(const Fields& fields, NiftiHeader& header) {
   }
   header.to_ras = sform ? SformOf(fields) : QformOf(fields);
   header.to_ras.matrix().topRows<3>() *= UnitOf(fields);
-  const Eigen::Matrix3d axes = header.to_ras.linear();
-  const double low = axes.colwise().norm().minCoeff(), high = axes.colwise().norm().maxCoeff();
-  constexpr double kMostElongated = 20;  // of a voxel; masks are padded by some of its longest edges
-  const bool valid = axes.allFinite() && header.to_ras.translation().allFinite() && low >= 0.05 && high <= 50 &&
-                     high <= kMostElongated * low && header.to_ras.translation().norm() < 1e5 &&
-                     std::abs(axes.determinant()) > 0.1 * low * low * low;
-  if (!valid) {
+  if (!IsVoxelFrame(header.to_ras)) {
     return fields.Error(sform ? fields.at->srow : fields.at->quaternion,
-                        "the orientation is not an affine frame with voxels of 0.05 to 50 mm, at most 20 times as long "
-                        "as wide; save it "
-                        "from a viewer that displays it");
+                        absl::StrCat("the orientation is not an affine frame with ", kVoxelFrameRule,
+                                     "; save it from a viewer that displays it"));
   }
   return absl::OkStatus();
 }

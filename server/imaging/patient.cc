@@ -91,8 +91,8 @@ absl::StatusOr<Patient> MakePatient(const LabelVolume& volume, const v1::LabelMa
                                     const PatientOptions& options, PatientProgress progress) {
   Patient patient;
   patient.report.set_name(options.name);
-  Messages fallbacks;
-  const absl::StatusOr<std::vector<Part>> parts = FindParts(volume, Resolve(map, volume), fallbacks);
+  Messages fallbacks = volume.remarks;
+  const absl::StatusOr<std::vector<Part>> parts = FindParts(volume, Resolve(map, volume, fallbacks), fallbacks);
   if (!parts.ok()) return parts.status();
   if (absl::Status status = CheckParts(*parts); !status.ok()) return status;
   const absl::StatusOr<CageFrame> frame = FindCageFrame(volume, *parts, fallbacks);

@@ -7,8 +7,8 @@
 #include <functional>
 
 #include "absl/strings/match.h"
+#include "server/imaging/label_file.h"
 #include "server/imaging/label_map.h"
-#include "server/imaging/nifti.h"
 #include "server/imaging/patient.h"
 #include "server/imaging/phantom.h"
 #include "server/schema/schema.h"
@@ -184,8 +184,8 @@ TEST_F(OddVolumes, OfSlabsInThePlaceOfAThoraxGiveAPatientOrARemedy) {
 }
 
 TEST(OddVolumeFiles, FoldersAndDevicesAreErrors) {
-  EXPECT_TRUE(absl::IsNotFound(ReadNifti(testing::TempDir()).status()));
-  EXPECT_FALSE(ReadNifti("/dev/null").ok());
+  EXPECT_TRUE(absl::IsNotFound(ReadLabels(testing::TempDir()).status()));
+  EXPECT_FALSE(ReadLabels("/dev/null").ok());
   EXPECT_TRUE(absl::IsNotFound(ReadLabelMap(testing::TempDir()).status()));
 }
 

@@ -1,0 +1,29 @@
+#include "server/imaging/label_file.h"
+
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
+#include "absl/strings/str_cat.h"
+#include "server/imaging/dicom_file.h"
+#include "server/imaging/dicom_segmentation.h"
+#include "server/imaging/nifti.h"
+#include "server/schema/file_bytes.h"
+
+namespace phrenic::imaging {
+
+absl::StatusOr<LabelVolume> ParseLabels(std::string_view name, std::string_view bytes) {
+  return IsDicom(bytes) ? ParseDicomSegmentation(name, bytes) : ParseNifti(name, bytes);
+}
+
+absl::StatusOr<LabelVolume> ReadLabels(const std::string& path) {
+  const std::optional<std::string> bytes = ReadBytes(path);
+  if (bytes.has_value()) return ParseLabels(path, *bytes);
+  std::error_code error;
+  const bool folder = std::filesystem::is_directory(path, error);
+  return absl::NotFoundError(
+      absl::StrCat("cannot read the label volume ", path,
+                   folder ? ": it is a folder; name the file of the segmentation in it" : "; check the path"));
+}
+
+}  // namespace phrenic::imaging

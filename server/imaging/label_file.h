@@ -1,0 +1,22 @@
+// Reads label volumes of every supported file format.
+#ifndef PHRENIC_SERVER_IMAGING_LABEL_FILE_H_
+#define PHRENIC_SERVER_IMAGING_LABEL_FILE_H_
+
+#include <string>
+#include <string_view>
+
+#include "absl/status/statusor.h"
+#include "server/imaging/label_volume.h"
+
+namespace phrenic::imaging {
+
+// Parses a DICOM Segmentation (dicom_segmentation.h) or a NIfTI file (nifti.h). The content decides, not the name's
+// ending. INVALID_ARGUMENT "name: ..." with problem and remedy. Thread-safe.
+absl::StatusOr<LabelVolume> ParseLabels(std::string_view name, std::string_view bytes);
+
+// Reads and parses a file. NOT_FOUND names the path, and says so if it is a folder.
+absl::StatusOr<LabelVolume> ReadLabels(const std::string& path);
+
+}  // namespace phrenic::imaging
+
+#endif  // PHRENIC_SERVER_IMAGING_LABEL_FILE_H_

@@ -1,0 +1,53 @@
+// `phrenic patient` makes the same patient of a NIfTI file and of a DICOM Segmentation.
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "tests/client/programs.h"
+
+namespace phrenic::client {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Outcome MakeCoarsePatient(const std::string& labels) {
+  return Phrenic({"patient", labels, "--out", Scratch("patients"), "--name", "jane", "--edge-length", "12",
+                  "--vertices", "800", "-o", "json"});
+}
+
+TEST(PatientCommand, ANiftiFileAndADicomSegmentationAreTheSamePatient) {
+  const std::string python = "/usr/bin/python3 ";
+  if (std::system((python + "-c 'import nibabel, pydicom' 2>/dev/null").c_str()) != 0) {
+    GTEST_SKIP() << "nibabel or pydicom is not installed (python3-nibabel, python3-pydicom)";
+  }
+  const std::string nifti = Scratch("labels.nii.gz"), dicom = Scratch("labels.dcm");
+  ASSERT_EQ(Phrenic({"phantom", "--voxel", "5", "--out", nifti}).code, 0);
+  const std::string script = PHRENIC_SOURCE_DIR "/tests/imaging/write_segmentation.py ";
+  ASSERT_EQ(std::system((python + script + nifti + " " + dicom).c_str()), 0);
+  const Outcome from_nifti = MakeCoarsePatient(nifti), from_dicom = MakeCoarsePatient(dicom);
+  ASSERT_EQ(from_nifti.code, 0) << from_nifti.err;
+  ASSERT_EQ(from_dicom.code, 0) << from_dicom.err;
+  const auto expected = from_nifti.json(), report = from_dicom.json();
+  ASSERT_GT(expected["surfaces"].size(), 30U);
+  ASSERT_EQ(report["surfaces"].size(), expected["surfaces"].size());
+  for (std::size_t s = 0; s < expected["surfaces"].size(); ++s) {
+    const auto &surface = report["surfaces"][s], &other = expected["surfaces"][s];
+    EXPECT_EQ(surface["body"], other["body"]);
+    EXPECT_NEAR(surface["volume_ml"].get<double>() / other["volume_ml"].get<double>(), 1, 1e-3) << surface["body"];
+    EXPECT_EQ(surface["label_volume_ml"], other["label_volume_ml"]) << surface["body"];
+  }
+  EXPECT_EQ(report["ribs"].size(), expected["ribs"].size());
+  EXPECT_NEAR(report["diaphragm"]["area_cm2"].get<double>() / expected["diaphragm"]["area_cm2"].get<double>(), 1, 1e-3);
+  EXPECT_THAT(from_dicom.out + from_dicom.err, Not(HasSubstr("Doe")));
+}
+
+TEST(PatientCommand, ADicomFileThatIsNoSegmentationIsNamed) {
+  const Outcome outcome = MakeCoarsePatient(WriteScratch("empty.nii", std::string(128, '\0') + "DICM"));
+  EXPECT_NE(outcome.code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("DICOM"));
+}
+
+}  // namespace
+}  // namespace phrenic::client
