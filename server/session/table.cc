@@ -138,18 +138,14 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Make(const Claim& claim, const v
   if (!preset.ok()) return preset.status();
   parameters.MergeFrom(*preset);
   parameters.MergeFrom(request.parameters());
-  double stable_step = model->report.stable_step().seconds();
-  if (parameters.elasticity() != model->parameters.elasticity() ||
-      parameters.integrator() != model->parameters.integrator()) {
-    const v1::StableStep stable = LargestStableStep(*model, parameters);
-    stable_step = stable.seconds();
-    const bool named = request.parameters().has_time_step() || model->scene.parameters().has_time_step();
-    if (!named) parameters.set_time_step(ChosenStep(stable));
-  }
+  const v1::StableStep stable = StableStepOf(*model, parameters);
+  const bool named =
+      request.parameters().has_time_step() || preset->has_time_step() || model->scene.parameters().has_time_step();
+  if (!named) parameters.set_time_step(ChosenStep(stable));
   if (absl::Status status = schema::Validate(parameters); !status.ok()) return status;
   const auto changes = FindPulls(*model, request.pulls(), "pulls");
   if (!changes.ok()) return changes.status();
-  Session::Fork start{std::move(parameters), model->InitialState(), stable_step};
+  Session::Fork start{std::move(parameters), model->InitialState(), stable.seconds()};
   if (absl::Status status = ChangePulls(*changes, true, start.state.pulls); !status.ok()) return status;
   auto origin = Begin(claim, *model, std::move(compiled->surfaces), std::move(control));
   if (!origin.ok()) return origin.status();

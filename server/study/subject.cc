@@ -41,9 +41,9 @@ absl::StatusOr<Subject> MakeSubject(const v1::SceneSource& source, const std::st
   if (!preset_parameters.ok()) return preset_parameters.status();
   subject.parameters.MergeFrom(*preset_parameters);
   subject.parameters.MergeFrom(parameters);
-  if (!parameters.has_time_step() && !(*model)->scene.parameters().has_time_step()) {
-    subject.parameters.set_time_step(ChosenStep(LargestStableStep(**model, subject.parameters)));
-  }
+  const bool named =
+      parameters.has_time_step() || preset_parameters->has_time_step() || (*model)->scene.parameters().has_time_step();
+  if (!named) subject.parameters.set_time_step(ChosenStep(StableStepOf(**model, subject.parameters)));
   if (absl::Status status = schema::Validate(subject.parameters); !status.ok()) return status;
   return subject;
 }

@@ -68,6 +68,12 @@ double RoundDown(double value) {
 
 }  // namespace
 
+v1::StableStep StableStepOf(const Model& model, const v1::Parameters& parameters) {
+  const bool known = parameters.elasticity() == model.parameters.elasticity() &&
+                     parameters.integrator() == model.parameters.integrator();
+  return known ? model.report.stable_step() : LargestStableStep(model, parameters);
+}
+
 double ChosenStep(const v1::StableStep& stable) {
   // Where no step is stable: a small one, so that it can be watched going wrong.
   const double limit = stable.seconds() > 0 ? stable.seconds() : 0.1 / stable.omega_max();
