@@ -39,7 +39,7 @@ class BatchTest(SessionTest):
     def test_runs_go_on_from_a_frame_as_the_session_does(self):
         session = self.session("pressure-lungs")
         frame = session.step(50)
-        *_, last = session.play(0.2, fps=10)
+        *_, last = session.play(0.2, fps=10, read=("positions",))
         (run,) = phrenic.batch("pressure-lungs", [{}], seconds=0.2, fps=10, start=frame, read=("positions",))
         self.assertEqual(run.state_hash, last.state_hash)
         self.assertTrue((run.state.positions == last.state.positions).all())
