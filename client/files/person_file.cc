@@ -41,7 +41,8 @@ absl::Status WriteExpectedScene(const std::string& file, const SceneLungs& lungs
   const std::string description = absl::StrCat("Lungs of a person with the breath that ", number, " leads to expect.");
   const v1::Scene scene =
       fit::PersonScene({SceneNameOf(file), description, lungs.bodies, person.registered(), {preset}}, lungs.templates);
-  return WriteWhole(file, SceneText(scene, absl::StrCat("Written by phrenic fit from points at end exhale: ", source, ".")));
+  return WriteWhole(file,
+                    SceneText(scene, absl::StrCat("Written by phrenic fit from points at end exhale: ", source, ".")));
 }
 
 }  // namespace phrenic::client
