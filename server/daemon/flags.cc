@@ -97,12 +97,12 @@ void AddLimits(CLI::App& app, Flags& flags) {
   group.Add("session-cpu", limits.session_cpu, "Fraction of a processor core that stepping one session may use", 0.01,
             1);
   group.Add("max-exports", limits.exports,
-            "Maximum number of exports at a time, of comparisons, and of physiology checks", 1, 64);
-  group.Add(
-      "max-share", limits.share,
-      "Fraction of viewers, exports, comparisons, physiology checks and studies that one account, link or address "
-      "may have",
-      0.01, 1);
+            "Maximum number of exports at a time, of comparisons, of physiology checks, and of batches", 1, 64);
+  group.Add("max-share", limits.share,
+            "Fraction of viewers, exports, comparisons, physiology checks, batches and studies that one account, link "
+            "or address "
+            "may have",
+            0.01, 1);
   group.Add("max-calls", options.max_calls,
             "Maximum number of calls and streams in flight of an account, link or address; a sixteenth for an address "
             "without an account",

@@ -139,7 +139,8 @@ grpc::Status StudyService::RunBatch(grpc::CallbackServerContext* context, const 
   const auto compile = [&](const v1::SceneSource& source) {
     return models_.Get(source, guard_.RequesterOf(*caller, *context));
   };
-  const auto batch = study::Batch::Make(*request, compile);
+  const std::function<bool()> cancelled = [context] { return context->IsCancelled(); };
+  const auto batch = study::Batch::Make(*request, compile, cancelled);
   if (!batch.ok()) return ToGrpc(batch.status());
   if (absl::Status status = writer->Reserve(batch->ResultBytes()); !status.ok()) return ToGrpc(status);
   v1::RunBatchResponse response;
@@ -149,7 +150,7 @@ grpc::Status StudyService::RunBatch(grpc::CallbackServerContext* context, const 
     *response.mutable_result() = std::move(result);
     return writer->Write(response);
   };
-  return ToGrpc(study::RunAll(*batch, take, [&] { return context->IsCancelled(); }));
+  return ToGrpc(study::RunAll(*batch, take, cancelled));
 }
 
 }  // namespace phrenic::service

@@ -27,6 +27,8 @@ const Compiler kCompileRow = [](const v1::SceneSource&) -> absl::StatusOr<std::s
   return model;
 };
 
+const std::function<bool()> kGoOn = [] { return false; };
+
 v1::RunBatchRequest Runs(int count) {
   v1::RunBatchRequest request;
   request.mutable_source()->set_name("row");
@@ -37,18 +39,17 @@ v1::RunBatchRequest Runs(int count) {
 
 // Returns each run's hash, by its index.
 std::map<int, std::string> HashesOf(const v1::RunBatchRequest& request) {
-  const auto batch = Batch::Make(request, kCompileRow);
+  const auto batch = Batch::Make(request, kCompileRow, kGoOn);
   if (!batch.ok()) throw std::runtime_error(std::string(batch.status().message()));
   std::map<int, std::string> hashes;
   const absl::Status status = RunAll(
-      *batch, [&](v1::BatchResult result) { return hashes.emplace(result.run(), result.state_hash()).second; },
-      [] { return false; });
+      *batch, [&](v1::BatchResult result) { return hashes.emplace(result.run(), result.state_hash()).second; }, kGoOn);
   EXPECT_TRUE(status.ok()) << status;
   return hashes;
 }
 
 std::string BatchFault(const v1::RunBatchRequest& request) {
-  return std::string(Batch::Make(request, kCompileRow).status().message());
+  return std::string(Batch::Make(request, kCompileRow, kGoOn).status().message());
 }
 
 TEST(Batch, HasTheBitsOfSingleRunsAtAnyNumberOfThreads) {
@@ -72,11 +73,11 @@ TEST(Batch, SamplesMeasuresAtTheNearestSteps) {
   v1::RunBatchRequest request = Runs(1);
   request.set_frames_per_second(7);
   request.add_read(v1::STATE_PART_POSITIONS);
-  const auto batch = Batch::Make(request, kCompileRow);
+  const auto batch = Batch::Make(request, kCompileRow, kGoOn);
   ASSERT_TRUE(batch.ok()) << batch.status();
   EXPECT_EQ(batch->Header().measures(0), "height");
   EXPECT_EQ(batch->Header().layout().bodies(0).name(), "row");
-  const auto result = batch->Run(0, [] { return false; });
+  const auto result = batch->Run(0, kGoOn);
   ASSERT_TRUE(result.ok()) << result.status();
   ASSERT_EQ(result->times_size(), 4);
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(result->times(i), (i + 1) / 7.0, 0.001);
@@ -92,7 +93,7 @@ TEST(Batch, GoesOnFromAStateAsIfItHadNotStopped) {
   first.set_seconds(0.2);
   for (const int part : {v1::STATE_PART_POSITIONS, v1::STATE_PART_VELOCITIES, v1::STATE_PART_SCALARS})
     first.add_read(static_cast<v1::StatePart>(part));
-  const auto begun = Batch::Make(first, kCompileRow)->Run(0, [] { return false; });
+  const auto begun = Batch::Make(first, kCompileRow, kGoOn)->Run(0, kGoOn);
   ASSERT_TRUE(begun.ok()) << begun.status();
   second.set_seconds(0.3);
   *second.mutable_runs(0)->mutable_start() = begun->state();
@@ -131,11 +132,11 @@ TEST(Batch, SaysWhyARunEndedEarlyAndGoesOnWithTheOthers) {
   v1::Parameters& bad = *request.mutable_runs(1)->mutable_parameters();
   bad.set_integrator(v1::INTEGRATOR_EXPLICIT_EULER);
   bad.set_time_step(0.1);
-  const auto batch = Batch::Make(request, kCompileRow);
+  const auto batch = Batch::Make(request, kCompileRow, kGoOn);
   ASSERT_TRUE(batch.ok()) << batch.status();
   std::map<int, v1::BatchResult> results;
   const auto keep = [&](v1::BatchResult result) { return results.emplace(result.run(), std::move(result)).second; };
-  ASSERT_TRUE(RunAll(*batch, keep, [] { return false; }).ok());
+  ASSERT_TRUE(RunAll(*batch, keep, kGoOn).ok());
   ASSERT_EQ(results.size(), 3u);
   EXPECT_THAT(results[1].problem(), testing::AllOf(HasSubstr("diverged at"), HasSubstr("row")));
   EXPECT_EQ(results[1].measures_size(), results[1].times_size());
@@ -148,15 +149,15 @@ TEST(Batch, EndsWhenItIsCancelledOrNotTaken) {
   v1::RunBatchRequest request = Runs(50);
   request.set_seconds(600);
   request.set_frames_per_second(1);
-  const auto batch = Batch::Make(request, kCompileRow);
+  const auto batch = Batch::Make(request, kCompileRow, kGoOn);
   ASSERT_TRUE(batch.ok()) << batch.status();
   const auto take_all = [](v1::BatchResult) { return true; };
   EXPECT_EQ(RunAll(*batch, take_all, [] { return true; }).code(), absl::StatusCode::kCancelled);
   int taken = 0;
   const auto take_two = [&](v1::BatchResult) { return ++taken < 2; };
   request.set_seconds(0.1);
-  const auto shorter = Batch::Make(request, kCompileRow);
-  EXPECT_EQ(RunAll(*shorter, take_two, [] { return false; }).code(), absl::StatusCode::kCancelled);
+  const auto shorter = Batch::Make(request, kCompileRow, kGoOn);
+  EXPECT_EQ(RunAll(*shorter, take_two, kGoOn).code(), absl::StatusCode::kCancelled);
   EXPECT_EQ(taken, 2);
 }
 

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/mechanics/compile/presets.h"
 #include "server/mechanics/measures/readings.h"
 #include "server/schema/schema.h"
 #include "server/schema/thread_cpu.h"
@@ -92,7 +93,8 @@ std::string ProblemOf(const WatchedRun& run, double most_cpu) {
 Batch::Batch(v1::RunBatchRequest request, std::shared_ptr<const Model> model)
     : request_(std::move(request)), model_(std::move(model)), layout_(*model_) {}
 
-absl::StatusOr<Batch> Batch::Make(v1::RunBatchRequest request, const Compiler& compile) {
+absl::StatusOr<Batch> Batch::Make(v1::RunBatchRequest request, const Compiler& compile,
+                                  const std::function<bool()>& cancelled) {
   if (request.runs_size() > kMostBatchRuns) {
     return absl::InvalidArgumentError(
         absl::StrFormat("runs: %d are more than %d: send several requests", request.runs_size(), kMostBatchRuns));
@@ -102,40 +104,48 @@ absl::StatusOr<Batch> Batch::Make(v1::RunBatchRequest request, const Compiler& c
   if (!model.ok()) return model.status();
   SetDefaults(request);
   Batch batch(std::move(request), *std::move(model));
-  if (absl::Status status = batch.Check(); !status.ok()) return status;
+  if (absl::Status status = batch.Check(cancelled); !status.ok()) return status;
   return batch;
 }
 
 double Batch::CountSamples() const { return request_.seconds() * request_.frames_per_second(); }
 
-absl::Status Batch::Check() const {
+absl::Status Batch::Check(const std::function<bool()>& cancelled) const {
   const double numbers = CountSamples() * static_cast<double>(model_->measures.size() + 1);
   if (numbers > kMostSampledNumbers) {
     return absl::InvalidArgumentError(
         absl::StrFormat("frames_per_second: a run of %g s gives %.3g numbers, more than %.3g: lower it, or the seconds",
                         request_.seconds(), numbers, kMostSampledNumbers));
   }
+  if (const auto preset = FindPreset(model_->scene, request_.preset()); !preset.ok()) return preset.status();
   for (int run = 0; run < size(); ++run) {
+    if (cancelled()) return Cancelled();
     if (absl::Status status = CheckRun(run); !status.ok()) return status;
   }
   return absl::OkStatus();
 }
 
 absl::Status Batch::CheckRun(int run) const {
-  const absl::StatusOr<Subject> subject = SubjectOf(run);
-  if (!subject.ok()) return subject.status();
-  return request_.runs(run).has_start() ? StartOf(run, subject->parameters).status() : absl::OkStatus();
+  v1::Parameters parameters = model_->parameters;
+  parameters.MergeFrom(*FindPreset(model_->scene, request_.preset()));
+  parameters.MergeFrom(ParametersOf(run));
+  if (absl::Status status = schema::Validate(parameters); !status.ok()) {
+    return InField(absl::StrCat("runs[", run, "].parameters."), status);
+  }
+  return request_.runs(run).has_start() ? StartOf(run, parameters).status() : absl::OkStatus();
+}
+
+v1::Parameters Batch::ParametersOf(int run) const {
+  v1::Parameters parameters = request_.parameters();
+  parameters.MergeFrom(request_.runs(run).parameters());
+  return parameters;
 }
 
 absl::StatusOr<Subject> Batch::SubjectOf(int run) const {
-  v1::Parameters parameters = request_.parameters();
-  parameters.MergeFrom(request_.runs(run).parameters());
   const auto compiled = [this](const v1::SceneSource&) -> absl::StatusOr<std::shared_ptr<const Model>> {
     return model_;
   };
-  absl::StatusOr<Subject> subject = MakeSubject(request_.source(), request_.preset(), parameters, compiled);
-  if (subject.ok() || !absl::IsInvalidArgument(subject.status())) return subject;
-  return InField(absl::StrCat("runs[", run, "]: "), subject.status());
+  return MakeSubject(request_.source(), request_.preset(), ParametersOf(run), compiled);
 }
 
 absl::StatusOr<State> Batch::StartOf(int run, const v1::Parameters& parameters) const {

@@ -29,9 +29,11 @@ class Batch {
 
  private:
   Batch(v1::RunBatchRequest request, std::shared_ptr<const Model> model);
-  absl::Status Check() const;
+  absl::Status Check(const std::function<bool()>& cancelled) const;
   absl::Status CheckRun(int run) const;
-  // Returns the model with the parameters of a run, and its time step. INVALID_ARGUMENT names the field.
+  // Returns what the request sets for a run.
+  v1::Parameters ParametersOf(int run) const;
+  // Returns the model with the parameters of a run, every field set, and its time step.
   absl::StatusOr<Subject> SubjectOf(int run) const;
   absl::StatusOr<State> StartOf(int run, const v1::Parameters& parameters) const;
   double CountSamples() const;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/synchronization/mutex.h"
+#include "server/jobs/thread_priority.h"
 
 namespace phrenic::study {
 namespace {
@@ -20,6 +21,7 @@ class ResultQueue {
 
   // Takes runs until none is left or the batch has ended.
   void Work() {
+    jobs::LowerThreadPriority();
     const std::function<bool()> stop = [this] { return ended_ || cancelled_(); };
     for (int run = next_++; run < batch_.size() && !ended_; run = next_++) {
       absl::StatusOr<v1::BatchResult> result = batch_.Run(run, stop);
