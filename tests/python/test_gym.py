@@ -1,11 +1,12 @@
-"""The environment keeps the contract that Gymnasium's checker checks: spaces, tuples, seeds, the end of an episode."""
+"""Every environment keeps the contract that Gymnasium's checker checks: spaces, tuples, seeds, the end of an episode."""
 
 import unittest
 
 import numpy as np
 
 import phrenic
-from phrenic.gym import VentilateCopd
+from phrenic.gym import FollowVolume, KeepBreathing, VentilateCopd
+from phrenic.vector import FollowVolumeVector, KeepBreathingVector, VentilateCopdVector
 
 
 class GymTest(unittest.TestCase):
@@ -63,3 +64,77 @@ class GymTest(unittest.TestCase):
         for action in ([-1], [4], [np.nan], [1, 1], 1.0):
             with self.assertRaises(phrenic.errors.InvalidArgument):
                 self.env.step(np.array(action, np.float32))
+
+
+class TasksTest(unittest.TestCase):
+    def test_muscle_moves_air_and_the_actions_have_their_own_effect(self):
+        with FollowVolume(resolution_mm=12, seconds=2, interval=0.5) as env:
+            moved = {}
+            for action in ((0, 0), (0.2, 0), (0, 0.5)):
+                env.reset(seed=0)
+                moved[action] = [env.step(np.array(action, np.float32))[0][0] for _ in range(4)][-1]
+        self.assertGreater(moved[0.2, 0], moved[0, 0] + 0.05)
+        self.assertGreater(moved[0, 0.5], moved[0, 0] + 0.05)
+
+    def test_a_paralysed_patient_suffocates_unless_it_is_ventilated(self):
+        with KeepBreathing(resolution_mm=12, seconds=9, interval=0.5) as env:
+            for rate, ending in ((0, (-10.0, True, False)), (0.25, None)):
+                env.reset(seed=0)
+                for i in range(18):
+                    pressure = 1.0 if rate and (i * 0.5 * rate) % 1 < 0.5 else 0.0
+                    _, *end, _ = env.step(np.array([pressure], np.float32))
+                    if end[1] or end[2]:
+                        break
+                if ending:
+                    self.assertEqual(tuple(end), ending)
+                else:
+                    self.assertEqual(end[1:], [False, True])
+
+
+class VectorTest(unittest.TestCase):
+    OPTIONS = {"resolution_mm": 12, "seconds": 0.3}
+
+    def test_each_patient_is_that_of_the_single_environment(self):
+        for Vector, Single in ((VentilateCopdVector, VentilateCopd), (FollowVolumeVector, FollowVolume)):
+            patients = Vector(3, threads=2, **self.OPTIONS)
+            patients.action_space.seed(5)
+            actions = [patients.action_space.sample() for _ in range(3)]
+            first, infos = patients.reset(seed=[4, 5, 4])
+            steps = [patients.step(action) for action in actions]
+            self.assertIn(first, patients.observation_space)
+            self.assertEqual(steps[0][1].shape, (3,))
+            for i, seed in enumerate((4, 5, 4)):
+                with Single(**self.OPTIONS) as env:
+                    observation, info = env.reset(seed=seed)
+                    np.testing.assert_array_equal(observation, first[i])
+                    self.assertEqual(info["state_hash"], infos["state_hash"][i])
+                    for action, (rows, rewards, terminated, truncated, more) in zip(actions, steps):
+                        observation, reward, *ends, info = env.step(action[i])
+                        np.testing.assert_array_equal(observation, rows[i])
+                        self.assertEqual(reward, rewards[i])
+                        self.assertEqual(ends, [terminated[i], truncated[i]])
+                        self.assertEqual(info["state_hash"], more["state_hash"][i])
+
+    def test_a_patient_whose_episode_has_ended_begins_anew_with_the_next_step(self):
+        patients = VentilateCopdVector(2, **self.OPTIONS)
+        first, _ = patients.reset(seed=7)
+        still = np.zeros((2, 1), np.float32)
+        *_, truncated, _ = [patients.step(still) for _ in range(3)][-1]
+        self.assertTrue(truncated.all())
+        observations, rewards, terminated, truncated, infos = patients.step(still)
+        self.assertEqual((rewards.tolist(), infos["seconds"].tolist()), ([0, 0], [0, 0]))
+        self.assertFalse((terminated | truncated).any())
+        self.assertEqual(observations[0][0], first[0][0])
+        *_, infos = patients.step(still)
+        self.assertAlmostEqual(infos["seconds"][0], 0.1, 2)
+
+    def test_wrong_requests_are_refused(self):
+        patients = KeepBreathingVector(2, **self.OPTIONS)
+        with self.assertRaisesRegex(phrenic.errors.FailedPrecondition, "reset"):
+            patients.step(np.zeros((2, 1), np.float32))
+        with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "3 seeds for 2"):
+            patients.reset(seed=[1, 2, 3])
+        patients.reset(seed=1)
+        for actions in (np.zeros((3, 1)), np.full((2, 1), 4), np.full((2, 1), np.nan)):
+            with self.assertRaises(phrenic.errors.InvalidArgument):
+                patients.step(actions.astype(np.float32))
