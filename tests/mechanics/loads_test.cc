@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "server/mechanics/lungs/mode_parameters.h"
 #include "tests/compile_text.h"
 #include "tests/small_scenes.h"
