@@ -12,6 +12,7 @@ import { appearancePanel } from "../panels/view/appearance_panel";
 import { coloringCard } from "../panels/view/coloring_card";
 import { OrientationCube } from "../panels/view/orientation_cube";
 import { PickCard } from "../panels/view/pick_card";
+import { rememberedQuality } from "../panels/view/quality_row";
 import type { Comparisons } from "../session/comparisons";
 import type { ForceQueries, ForceRequest } from "../session/force_queries";
 import { Signal } from "../state/signal";
@@ -37,6 +38,7 @@ export class SceneTools {
   readonly labels = new Signal(false);
   readonly cut = new Signal<Cut>({ kind: "none", fraction: 0.5, flipped: false });
   readonly ghost = new Signal<GhostKind>("none");
+  readonly quality = rememberedQuality();
   private readonly pickCard: PickCard;
   private readonly ghosts: GhostSelector;
   private bodies: Body[] = [];
@@ -59,11 +61,12 @@ export class SceneTools {
     this.annotations = new Annotations(viewer);
     this.cube = new OrientationCube((view) => viewer.goTo(view));
     this.cards = [coloringCard(this.coloring), this.pickCard.element];
-    const { labels, ghost } = this;
+    const { labels, ghost, quality } = this;
     this.panel = appearancePanel({
       layerStyles,
       labels,
       ghost,
+      quality,
       forceKinds: forces.kinds,
       overlays: this.overlays,
       coloring: this.coloring,
@@ -77,6 +80,7 @@ export class SceneTools {
     labels.subscribe((on) => this.annotations.setLabels(on));
     layerStyles.all.subscribe((all) => this.annotations.setLayers(all));
     this.overlays.subscribe((shown) => viewer.showOverlays(shown));
+    quality.subscribe((chosen) => viewer.setQuality(chosen));
     this.coloring.field.subscribe(() => {
       this.updateFields();
       this.replayForces();

@@ -16,9 +16,13 @@ export class AdaptiveResolution {
   private lastDrawn = -Infinity;
   private lastFrame = -Infinity;
 
-  constructor(private readonly fullRatio: number) {
-    this.movingRatio = fullRatio;
-    this.currentRatio = fullRatio;
+  /** The full ratios at rest and during motion. */
+  constructor(
+    private readonly fullRatio: number,
+    movingRatio = fullRatio,
+  ) {
+    this.movingRatio = movingRatio;
+    this.currentRatio = movingRatio;
   }
 
   /** Current number of device pixels per CSS pixel. */

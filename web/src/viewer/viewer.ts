@@ -1,5 +1,7 @@
 import * as THREE from "three";
 import type { Body, FrameArrays } from "../geometry/bodies";
+import { computeNormals } from "../geometry/normals";
+import { computeOcclusion } from "../geometry/occlusion";
 import type { Surface } from "../geometry/surface";
 import { type Marker, type VertexRef } from "../geometry/vertices";
 import { AdaptiveResolution } from "./adaptive_resolution";
@@ -8,11 +10,12 @@ import { CameraRig, type Insets, type ViewOrientation } from "./camera_rig";
 import { enablePicking } from "./click_picking";
 import { clippingPlane, type Cut, planeCoordinate } from "./clipping";
 import { TranslucentSurfaces } from "./ghost";
-import { addLights } from "./lights";
+import { StudioLights } from "./lights";
 import { Markers } from "./markers";
 import type { ViewName } from "./named_views";
 import { type OverlayKind, overlayKinds } from "./overlays";
 import { type Pull, Pulling } from "./pulling";
+import { drawsInSoftware, type Quality, QualityChooser } from "./quality";
 
 /** Scenes with at most this many vertices are drawn as diagrams. */
 const maxDiagramVertices = 2000;
@@ -47,10 +50,15 @@ export class Viewer {
   private readonly renderer: THREE.WebGLRenderer;
   private views: BodyView[] = [];
   private overlays: ReadonlySet<OverlayKind> = new Set();
-  private readonly resolution = new AdaptiveResolution(Math.min(devicePixelRatio, 2));
+  private readonly software = drawsInSoftware();
+  private readonly resolution = resolutionFor(this.software);
   private readonly ghost = new TranslucentSurfaces({ color: "#8fd0ff", emissive: "#2d5f86" });
   private readonly comparedSurface = new TranslucentSurfaces({ color: "#ffd166", emissive: "#7a5a12" });
   private readonly markers = new Markers();
+  private readonly lights: StudioLights;
+  private readonly quality: QualityChooser;
+  /** True if the bodies have no ambient occlusion yet. */
+  private unshaded = false;
   private cut: Cut = { kind: "none", fraction: 0.5, flipped: false };
   private box = new THREE.Box3();
   private dirty = true;
@@ -65,16 +73,18 @@ export class Viewer {
   ) {
     this.renderer = new THREE.WebGLRenderer({
       canvas,
-      antialias: true,
+      antialias: !this.software,
       alpha: true,
       powerPreference: "high-performance",
     });
-    // No tone mapping, so that layers have the colours of their swatches.
-    this.renderer.toneMapping = THREE.NoToneMapping;
+    this.renderer.toneMapping = THREE.ACESFilmicToneMapping;
+    this.renderer.toneMappingExposure = 0.88;
     this.renderer.setPixelRatio(this.resolution.ratio);
     this.rig = new CameraRig(canvas, () => this.refresh(), host.reducedMotion);
     this.scene.fog = this.fog;
-    addLights(this.scene, this.rig.camera);
+    this.quality = new QualityChooser(this.software);
+    this.lights = new StudioLights(this.scene, this.rig.camera, this.renderer);
+    this.lights.setQuality(this.quality.quality);
     this.scene.add(this.ghost.object, this.comparedSurface.object, this.markers.object);
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.renderer.setAnimationLoop((now) => this.onAnimationFrame(now));
@@ -96,15 +106,50 @@ export class Viewer {
     this.comparedSurface.clear();
     const diagram = verticesOf(bodies) <= maxDiagramVertices;
     this.views = bodies.map((body) => new BodyView(body, diagram));
-    for (const view of this.views) this.scene.add(view.group);
+    for (const view of this.views) {
+      view.setDetailed(this.quality.quality !== "plain");
+      this.scene.add(view.group);
+    }
+    this.unshaded = !diagram;
     this.showOverlays(this.overlays);
-    const sample = sampleVertices(bodies);
+    const sample = sampleVertices(shownAtFirst(bodies));
     this.box = new THREE.Box3().setFromPoints(sample);
     this.setCut(this.cut);
     this.resize();
     this.rig.frame(sample);
     this.refresh();
     return diagram;
+  }
+
+  /** The quality of the picture. */
+  get pictureQuality(): Quality {
+    return this.quality.quality;
+  }
+
+  /** Sets the quality of the picture; undefined to choose it by the measured time of a drawing. */
+  setQuality(fixed: Quality | undefined): void {
+    this.quality.fixed = fixed;
+    this.applyQuality();
+  }
+
+  private applyQuality(): void {
+    const { quality } = this.quality;
+    this.lights.setQuality(quality);
+    for (const view of this.views) view.setDetailed(quality !== "plain");
+    this.refresh();
+  }
+
+  /** Computes ambient occlusion at rest, after the first drawing, which does not wait for it. */
+  private shade(): void {
+    this.unshaded = false;
+    const solid = this.views.filter(({ body }) => body.triangles.length > 0 && body.opacity > 0);
+    const surfaces = solid.map(({ body: { rest, triangles, opacity } }) => {
+      const normals = new Float32Array(rest.length);
+      computeNormals(rest, triangles, normals);
+      return { rest, triangles, normals, occludes: opacity === 1 };
+    });
+    computeOcclusion(surfaces).forEach((covered, i) => solid[i].setOcclusion(covered));
+    this.refresh();
   }
 
   /** The views of the bodies. */
@@ -146,6 +191,7 @@ export class Viewer {
     this.cut = cut;
     const plane = this.currentPlane();
     this.renderer.clippingPlanes = plane === undefined ? [] : [plane];
+    for (const view of this.views) view.setCut(plane !== undefined);
     this.refresh();
   }
 
@@ -241,6 +287,7 @@ export class Viewer {
       this.renderer.setPixelRatio(this.resolution.ratio);
       this.dirty = true;
     }
+    if (this.quality.recordFrame(now, this.dirty)) this.applyQuality();
     if (!this.dirty) return;
     this.dirty = false;
     const frame = this.host.frame();
@@ -254,15 +301,32 @@ export class Viewer {
     [this.fog.near, this.fog.far] = [distance - 0.1 * extent, distance + 0.75 * extent];
     const orientation = this.rig.orientation();
     this.markers.scale(markerSize / orientation.pixelsPerMetre);
+    this.lights.follow(this.rig.sceneCenter, extent);
     this.renderer.render(this.scene, this.rig.camera);
     this.drawn++;
     if (frame !== undefined && this.firstDrawTime < 0) this.firstDrawTime = performance.now();
+    if (frame !== undefined && this.unshaded) this.shade();
     this.host.afterDraw(orientation);
   }
 }
 
+/**
+ * Returns the resolution of a machine. Without a graphics card, smoothing edges costs as much as all the rest of a
+ * drawing; instead a scene at rest is drawn with twice the pixels.
+ */
+function resolutionFor(software: boolean): AdaptiveResolution {
+  const ratio = Math.min(devicePixelRatio, 2);
+  return software ? new AdaptiveResolution(2, ratio) : new AdaptiveResolution(ratio);
+}
+
 function verticesOf(bodies: Body[]): number {
   return bodies.reduce((sum, { rest }) => sum + rest.length / 3, 0);
+}
+
+/** Returns the bodies that the scene does not hide; all if it hides all. */
+function shownAtFirst(bodies: Body[]): Body[] {
+  const shown = bodies.filter(({ opacity }) => opacity > 0);
+  return shown.length > 0 ? shown : bodies;
 }
 
 /** Returns some thousands of rest positions as a sample of the scene. */
