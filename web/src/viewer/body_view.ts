@@ -10,6 +10,9 @@ import { ThickLines } from "./thick_lines";
 import { tissueOf } from "./tissues";
 import { VertexColors } from "./vertex_colors";
 
+/** Opacity of a faded body. */
+const fadedOpacity = 0.07;
+
 /**
  * The three.js objects of one body. All objects share one position buffer, so that a frame needs one copy and one
  * upload regardless of the overlays.
@@ -22,6 +25,9 @@ export class BodyView implements OverlayHost {
   private readonly mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial> | undefined;
   private readonly vertexColors: VertexColors | undefined;
   private opacity: number;
+  private faded = false;
+  /** Bounding box at rest, in the frame of the body [m]. */
+  readonly restBox: THREE.Box3;
   private readonly overlays: Overlay[];
   private readonly thick: ThickLines[] = [];
 
@@ -33,6 +39,7 @@ export class BodyView implements OverlayHost {
     this.group.name = body.name;
     this.opacity = body.opacity;
     this.positions = new THREE.BufferAttribute(body.rest.slice(), 3);
+    this.restBox = new THREE.Box3().setFromArray(body.rest);
     const streamed = body.placement === Placement.STREAMED;
     if (streamed) this.positions.setUsage(THREE.DynamicDrawUsage);
     const solid = body.triangles.length > 0;
@@ -73,7 +80,7 @@ export class BodyView implements OverlayHost {
     const geometry = this.geometry(body.triangles).setAttribute("normal", normals);
     const moving = body.placement === Placement.STREAMED;
     if (moving) geometry.setAttribute("rest", new THREE.BufferAttribute(body.rest, 3));
-    const material = surfaceMaterial(body.color, body.opacity, tissueOf(body), moving, middleOf(body.rest));
+    const material = surfaceMaterial(body.color, body.opacity, tissueOf(body), moving, middleOf(this.restBox));
     const mesh = new THREE.Mesh(geometry, material);
     mesh.castShadow = body.opacity === 1;
     mesh.receiveShadow = true;
@@ -133,8 +140,29 @@ export class BodyView implements OverlayHost {
     this.group.visible = opacity > 0;
     if (this.mesh === undefined) return;
     // Field colours are opaque, since their scale could not be read through a transparent surface.
-    setOpacity(this.mesh.material, this.vertexColors?.active ? 1 : opacity);
-    this.mesh.castShadow = opacity === 1;
+    const shown = this.vertexColors?.active ? 1 : opacity;
+    setOpacity(this.mesh.material, this.faded ? Math.min(shown, fadedOpacity) : shown);
+    this.mesh.material.forceSinglePass = this.faded;
+    this.mesh.castShadow = opacity === 1 && !this.faded;
+  }
+
+  /** True if the body is faded. */
+  get isFaded(): boolean {
+    return this.faded;
+  }
+
+  /** Fades the body to an outline, so that another one is seen through it. */
+  setFaded(faded: boolean): void {
+    this.faded = faded;
+    this.setOpacity(this.opacity);
+  }
+
+  /** Greys all but some vertices; undefined for none. */
+  setRegion(vertices: number[] | undefined): void {
+    if (vertices === undefined) return void this.mesh?.geometry.deleteAttribute("apart");
+    const apart = new Uint8Array(this.body.rest.length / 3).fill(255);
+    for (const vertex of vertices) apart[vertex] = 0;
+    this.mesh?.geometry.setAttribute("apart", new THREE.BufferAttribute(apart, 1, true));
   }
 
   /** Sets how much each vertex is covered by surfaces nearby, 0 to 255. */
@@ -175,10 +203,8 @@ export class BodyView implements OverlayHost {
   }
 }
 
-/** Returns the middle of the bounding box, x y [m]. */
-function middleOf(rest: Float32Array): THREE.Vector2 {
-  const box = new THREE.Box3().setFromArray(rest);
-  return new THREE.Vector2((box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2);
+function middleOf({ min, max }: THREE.Box3): THREE.Vector2 {
+  return new THREE.Vector2((min.x + max.x) / 2, (min.y + max.y) / 2);
 }
 
 function lighter(color: string): string {

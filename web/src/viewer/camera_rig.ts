@@ -52,6 +52,8 @@ export class CameraRig {
   private extent = 1;
   private flat = false;
   private remotePose: CameraPose | undefined;
+  /** What the camera showed before it flew to a structure. */
+  private before: { outlook: Outlook; view: ViewName | undefined } | undefined;
   private flight: { from: Outlook; to: Outlook; start: number } | undefined;
 
   constructor(
@@ -87,6 +89,7 @@ export class CameraRig {
   goTo(view: ViewName, atOnce = this.reducedMotion()): void {
     const side = view === "home" ? this.homeView : view;
     this.flyTo(fitted(viewDirection(side), this.points, this.camera, this.roomyArea()), atOnce);
+    this.before = undefined;
     this.namedView = view;
   }
 
@@ -95,7 +98,17 @@ export class CameraRig {
     const away = this.camera.position.clone().sub(this.controls.target).normalize();
     const { width, height } = this.freeArea;
     const free = { width: closeness * width, height: closeness * height };
-    if (points.length > 0) this.flyTo(fitted(away, points, this.camera, free), atOnce);
+    if (points.length === 0) return;
+    this.before ??= { outlook: this.flight?.to ?? this.outlook, view: this.namedView };
+    this.flyTo(fitted(away, points, this.camera, free), atOnce);
+  }
+
+  /** Moves back to where the camera was before `lookAt`. */
+  flyBack(atOnce = this.reducedMotion()): void {
+    const { before } = this;
+    this.before = undefined;
+    if (before?.view !== undefined) this.goTo(before.view, atOnce);
+    else if (before !== undefined) this.flyTo(before.outlook, atOnce);
   }
 
   private flyTo(to: Outlook, atOnce: boolean): void {

@@ -44,7 +44,7 @@ export class StudioLights {
     this.room.visible = this.fill.light.visible = plain;
     this.key.intensity = plain ? 1.75 : 2.5;
     this.fill.light.intensity = 0.4;
-    this.rim.light.intensity = 0.55;
+    this.rim.light.intensity = 0.32;
     this.key.castShadow = this.renderer.shadowMap.enabled = quality === "full";
   }
 

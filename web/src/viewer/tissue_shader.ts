@@ -16,7 +16,8 @@ export interface TissueUniforms {
 }
 
 /**
- * Adds to a standard material: ambient occlusion per vertex (attribute `occlusion`), fibres and spots that are fixed to
+ * Adds to a standard material: ambient occlusion per vertex (attribute `occlusion`), grey for vertices that are not of the
+ * chosen region (attribute `apart`), fibres and spots that are fixed to
  * the rest position (attribute `rest`), a sheen at grazing angles, and translucency that is denser at the silhouette.
  *
  * With SECTION the inner side of a surface is drawn as a flat cut: through a clipped closed body one sees nothing else.
@@ -42,7 +43,9 @@ function inserted(source: string, parts: [after: string, text: string][]): strin
 
 const vertexHead = `
 attribute float occlusion;
+attribute float apart;
 varying float vOcclusion;
+varying float vApart;
 varying vec3 vRest;
 #ifdef MOVING
   attribute vec3 rest;
@@ -50,6 +53,7 @@ varying vec3 vRest;
 
 const vertexBody = `
 vOcclusion = occlusion;
+vApart = apart;
 #ifdef MOVING
   vRest = rest;
 #else
@@ -66,6 +70,7 @@ uniform float spotsPerMetre;
 uniform float scatter;
 uniform vec3 section;
 varying float vOcclusion;
+varying float vApart;
 varying vec3 vRest;
 float hash1(float n) { return fract(sin(n * 12.9898) * 43758.5453); }
 float hash3(vec3 p) {
@@ -105,6 +110,7 @@ const pattern = `
     diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.62, 0.36, 0.29), 0.22 * fibres * smoothstep(0.62, 0.95, bundle));
     fibreSlope = fibres * (0.65 * coarse.y + 0.35 * fine.y) * vec2(-fromAxis.y, fromAxis.x) / max(length(fromAxis), 1e-4);
   }
+  diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.16, 0.14, 0.15) + 0.1 * diffuseColor.rgb, vApart);
   #ifdef DETAILED
     if (spots > 0.0) diffuseColor.rgb *= 1.0 + spots * (2.0 * noise3(vRest * spotsPerMetre) - 1.0);
   #endif

@@ -15,7 +15,10 @@ import { Markers } from "./markers";
 import type { ViewName } from "./named_views";
 import { type OverlayKind, overlayKinds } from "./overlays";
 import { type Pull, Pulling } from "./pulling";
+import { pointerOf } from "./picking";
+import { onPointerRest } from "./pointer_rest";
 import { drawsInSoftware, type Quality, QualityChooser } from "./quality";
+import { surfaceVertex } from "./surface_picking";
 
 /** Scenes with at most this many vertices are drawn as diagrams. */
 const maxDiagramVertices = 2000;
@@ -248,6 +251,31 @@ export class Viewer {
     );
   }
 
+  /** Calls `rested` with the vertex under the resting pointer and its place [CSS pixels]; undefined if there is none. */
+  enableHover(rested: (vertex: VertexRef | undefined, x: number, y: number) => void): void {
+    const find = (event: PointerEvent) => {
+      const visible = this.views.filter(({ group, isFaded }) => group.visible && !isFaded);
+      const pointer = pointerOf(event, this.canvas);
+      const { extent } = this.rig.depth;
+      const vertex = surfaceVertex(pointer, this.rig.camera, visible, extent, this.currentPlane());
+      rested(vertex, event.offsetX, event.offsetY);
+    };
+    onPointerRest(this.canvas, find, () => rested(undefined, 0, 0));
+  }
+
+  /** Fades all bodies but one and flies to its vertices; undefined shows all, from where they were seen before. */
+  isolate(part: { body: string; vertices: number[] | undefined } | undefined): void {
+    for (const view of this.views) {
+      const own = view.body.name === part?.body;
+      view.setFaded(part !== undefined && !own);
+      view.setRegion(own ? part.vertices : undefined);
+    }
+    const view = this.views.find(({ body }) => body.name === part?.body);
+    if (view === undefined || part === undefined) this.rig.flyBack();
+    else this.rig.lookAt(placesOf(view.worldPositions(), part.vertices));
+    this.refresh();
+  }
+
   /** Moves the camera to a named view. */
   goTo(view: ViewName): void {
     this.rig.goTo(view);
@@ -317,6 +345,14 @@ export class Viewer {
 function resolutionFor(software: boolean): AdaptiveResolution {
   const ratio = Math.min(devicePixelRatio, 2);
   return software ? new AdaptiveResolution(2, ratio) : new AdaptiveResolution(ratio);
+}
+
+/** Returns the positions of some vertices, at most about a thousand; of all if `vertices` is undefined. */
+function placesOf(positions: ArrayLike<number>, vertices: number[] | undefined): THREE.Vector3[] {
+  const all = vertices ?? Array.from({ length: positions.length / 3 }, (_, i) => i);
+  const stride = Math.ceil(all.length / 1000);
+  const some = all.filter((_, i) => i % stride === 0);
+  return some.map((i) => new THREE.Vector3().fromArray(positions, 3 * i));
 }
 
 function verticesOf(bodies: Body[]): number {
