@@ -20,11 +20,17 @@ afterAll(() => endAll(browser, server));
 
 const eye = () => viewer.page.evaluate(() => window.phrenic!.eye());
 
+/** Waits until the camera has arrived and the picture is drawn in full resolution. */
+async function arrived(): Promise<void> {
+  await viewer.page.waitForFunction(() => !window.phrenic!.flying());
+  await viewer.page.waitForTimeout(1200);
+}
+
 /** Presses a key on the canvas and waits for the flight. */
 async function press(key: string): Promise<void> {
   await viewer.page.focus("#view");
   await viewer.page.keyboard.press(key);
-  await viewer.page.waitForTimeout(2500);
+  await arrived();
 }
 
 describe("the picture", () => {
@@ -77,7 +83,7 @@ describe("the named views", () => {
     }
     expect(seen.size, [...seen].join("\n")).toBe(10);
     await viewer.page.selectOption("#viewpoints", { label: "Coronal cut through the domes (8)" });
-    await viewer.page.waitForTimeout(2500);
+    await arrived();
     expect(await viewer.page.inputValue("#cut")).toBe("coronal");
     await viewer.saveScreenshot("picture-coronal");
     await press("h");
@@ -113,7 +119,7 @@ describe("a structure", () => {
     await page.waitForSelector('#find-results [role="option"]');
     expect(await viewer.violations()).toEqual([]);
     await page.keyboard.press("Enter");
-    await page.waitForTimeout(2500);
+    await arrived();
     expect(await page.textContent("#structure h2")).toBe("Right 5th rib");
     expect(await page.textContent("#structure .latin")).toBe("Costa V dextra");
     expect(await changedFraction(browser, whole, await canvasPicture(viewer))).toBeGreaterThan(0.1);

@@ -43,6 +43,11 @@ describe("views", () => {
     }
   });
 
+  test("ASceneWithoutRibsOpensFromAbove", () => {
+    const box = new THREE.Box3(new THREE.Vector3(), new THREE.Vector3(1, 1, 1));
+    expect(viewDirection(openingView(box, false)).z).toBeGreaterThan(0);
+  });
+
   test("TheFirstIsFromThePatientsRightAndSlightlyBelow", () => {
     const { x, y, z } = viewDirection("home");
     expect([Math.sign(x), Math.sign(y), Math.sign(z)]).toEqual([-1, -1, -1]);

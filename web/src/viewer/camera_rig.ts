@@ -9,6 +9,7 @@ import {
   openingView,
   type Outlook,
   planeAxes,
+  type Side,
   viewDirection,
   type ViewName,
 } from "./named_views";
@@ -45,7 +46,7 @@ export class CameraRig {
   private readonly controls: OrbitControls;
   private points: THREE.Vector3[] = [];
   private center = new THREE.Vector3();
-  private homeView: ViewName = "home";
+  private homeView: Side = "home";
   private freeArea: FreeArea = { width: 1, height: 1 };
   /** The named view that the camera shows or moves to; undefined after the user moved it. */
   private namedView: ViewName | undefined;
@@ -69,8 +70,8 @@ export class CameraRig {
     this.controls.addEventListener("start", () => (this.flight = this.namedView = this.remotePose = undefined));
   }
 
-  /** Fits the camera to a new scene; `points` is a sample of its vertices. */
-  frame(points: THREE.Vector3[]): void {
+  /** Fits the camera to a new scene; `points` is a sample of its vertices, `caged` is true if it has a rib cage. */
+  frame(points: THREE.Vector3[], caged: boolean): void {
     const box = new THREE.Box3().setFromPoints(points);
     this.points = points;
     this.center = box.getCenter(new THREE.Vector3());
@@ -80,7 +81,7 @@ export class CameraRig {
     this.camera.far = size * 20;
     this.controls.minDistance = size / 20;
     this.controls.maxDistance = size * 8;
-    this.homeView = openingView(box);
+    this.homeView = openingView(box, caged);
     this.flat = planeAxes(box) !== undefined;
     this.goTo("home", true);
   }
@@ -142,6 +143,11 @@ export class CameraRig {
     this.camera.setViewOffset(width, height, -left / 2, (bottom - top) / 2, width, height);
     this.camera.updateProjectionMatrix();
     if (this.namedView !== undefined) this.goTo(this.namedView, true);
+  }
+
+  /** True while the camera flies to a view. */
+  get flying(): boolean {
+    return this.flight !== undefined;
   }
 
   /** Centre of the scene at rest [m]. */

@@ -6,10 +6,13 @@ import * as THREE from "three";
  */
 export const viewNames = ["home", "front", "back", "left", "right", "top", "bottom", "abdomen"] as const;
 export type ViewName = (typeof viewNames)[number];
+/** Side that a scene is seen from; "object" is the first view of a scene without a rib cage. */
+export type Side = ViewName | "object";
 
-const directions: Record<ViewName, [number, number, number]> = {
+const directions: Record<Side, [number, number, number]> = {
   // From the patient's right and slightly below: the domes are seen through the arch of the ribs.
   home: [-0.4, -1, -0.16],
+  object: [0.36, -1, 0.2],
   front: [0, -1, 0],
   back: [0, 1, 0],
   left: [1, 0, 0],
@@ -22,14 +25,15 @@ const directions: Record<ViewName, [number, number, number]> = {
 
 /**
  * Returns the initial view of a scene: perpendicular to the plane of a planar scene, otherwise from the front and
- * slightly to the side.
+ * slightly to the side; a rib cage (`caged`) is seen from below.
  */
-export function openingView(box: THREE.Box3): ViewName {
+export function openingView(box: THREE.Box3, caged = true): Side {
   const size = box.getSize(new THREE.Vector3());
   const thin = 0.02 * Math.max(size.x, size.y, size.z);
   if (size.z < thin) return "top";
   if (size.y < thin) return "front";
-  return size.x < thin ? "left" : "home";
+  if (size.x < thin) return "left";
+  return caged ? "home" : "object";
 }
 
 /** Returns the horizontal and vertical axis of a planar scene; undefined for other scenes. */
@@ -53,7 +57,7 @@ export interface Outlook {
 }
 
 /** Returns the unit vector from the scene to the camera of a view. */
-export function viewDirection(view: ViewName): THREE.Vector3 {
+export function viewDirection(view: Side): THREE.Vector3 {
   return new THREE.Vector3(...directions[view]).normalize();
 }
 

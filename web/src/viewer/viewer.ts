@@ -119,7 +119,10 @@ export class Viewer {
     this.box = new THREE.Box3().setFromPoints(sample);
     this.setCut(this.cut);
     this.resize();
-    this.rig.frame(sample);
+    this.rig.frame(
+      sample,
+      bodies.some(({ name }) => name.startsWith("rib-")),
+    );
     this.refresh();
     return diagram;
   }
