@@ -25,8 +25,9 @@ test("Screenshot", async () => {
       await viewer.waitForTick(before);
     }
     // The canvas is drawn at full resolution when nothing moves.
+    await page.selectOption("#quality", "full");
     await page.mouse.move(0, 0);
-    await page.waitForTimeout(4000);
+    await page.waitForTimeout(6000);
     await page.screenshot({ path: join(web, "screenshot.png") });
     // The same state compared with the diaphragm at rest.
     await page.setInputFiles("#compare-file", rest);

@@ -343,11 +343,11 @@ export class Viewer {
 
 /**
  * Returns the resolution of a machine. Without a graphics card, smoothing edges costs as much as all the rest of a
- * drawing; instead a scene at rest is drawn with twice the pixels.
+ * drawing; instead a scene at rest is drawn with twice the pixels. Fewer pixels in motion would save little.
  */
 function resolutionFor(software: boolean): AdaptiveResolution {
   const ratio = Math.min(devicePixelRatio, 2);
-  return software ? new AdaptiveResolution(2, ratio) : new AdaptiveResolution(ratio);
+  return software ? new AdaptiveResolution(2, ratio, 0.8) : new AdaptiveResolution(ratio);
 }
 
 /** Returns the positions of some vertices, at most about a thousand; of all if `vertices` is undefined. */
