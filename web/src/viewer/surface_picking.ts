@@ -7,7 +7,7 @@ const slack = 0.12;
 
 /**
  * Returns a vertex of the front triangle under the pointer (-1 to 1 from left to right and from bottom to top) that is
- * not clipped. Only bodies whose box the ray meets are searched: about a millisecond for a thorax.
+ * not clipped. Only bodies whose box the ray meets are searched: a few milliseconds for a thorax.
  */
 export function surfaceVertex(
   pointer: THREE.Vector2,
