@@ -57,6 +57,7 @@ async function columnOf(browser: Browser, server: Server, { preset, title, time,
     for (const each of document.querySelectorAll<HTMLElement>("#stage > :not(canvas)"))
       each.style.visibility = "hidden";
   });
+  await choose(page, "quality", "full");
   await choose(page, "ghost", "rest");
   const pictures: string[] = [];
   for (const { side, plane, position } of views) {

@@ -8,7 +8,7 @@ const web = join(import.meta.dirname, "../../web");
 const rest = join(outFolder, "rest.msh");
 
 // Not tests: `npm run screenshot` takes the screenshots of the README, during inspiration.
-test("Screenshot", async () => {
+test("Screenshot", { timeout: 300_000 }, async () => {
   const browser = await launchBrowser();
   const server = await Server.start();
   try {
@@ -25,9 +25,11 @@ test("Screenshot", async () => {
       await viewer.waitForTick(before);
     }
     // The canvas is drawn at full resolution when nothing moves.
+    await page.selectOption("#quality", "full");
     await page.mouse.move(0, 0);
-    await page.waitForTimeout(4000);
+    await page.waitForTimeout(6000);
     await page.screenshot({ path: join(web, "screenshot.png") });
+    await page.selectOption("#quality", "automatic");
     // The same state compared with the diaphragm at rest.
     await page.setInputFiles("#compare-file", rest);
     await page.waitForSelector("#comparison .result:not([hidden])");

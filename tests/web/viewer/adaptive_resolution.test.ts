@@ -21,4 +21,18 @@ describe("the adaptive resolution", () => {
     run(resolution, now, 16, 1000, false);
     expect(resolution.ratio).toBe(2);
   });
+
+  test("IsNotReducedBelowTheLeast", () => {
+    const resolution = new AdaptiveResolution(2, 1, 0.8);
+    run(resolution, 0, 500, 60_000);
+    expect(resolution.ratio).toBe(0.8);
+  });
+
+  test("MayBeHigherAtRestThanItEverIsInMotion", () => {
+    const resolution = new AdaptiveResolution(2, 1);
+    const now = run(resolution, 0, 16, 5000);
+    expect(resolution.ratio).toBe(1);
+    run(resolution, now, 16, 1000, false);
+    expect(resolution.ratio).toBe(2);
+  });
 });

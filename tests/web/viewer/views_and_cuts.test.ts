@@ -1,20 +1,27 @@
 import * as THREE from "three";
 import { describe, expect, test } from "vitest";
 import { clippingPlane, planeCoordinate } from "../../../web/src/viewer/clipping";
-import { cameraPosition, directionLetter, openingView, type ViewName } from "../../../web/src/viewer/named_views";
+import {
+  directionLetter,
+  fitted,
+  openingView,
+  viewDirection,
+  viewNames,
+  type ViewName,
+} from "../../../web/src/viewer/named_views";
 import { pickVertex } from "../../../web/src/viewer/picking";
 
 describe("views", () => {
   const camera = new THREE.PerspectiveCamera(26, 1.5);
-  const center = new THREE.Vector3(0, 0, 1.2);
   const corners = Array.from(
     { length: 8 },
     (_, i) => new THREE.Vector3(i & 1 ? 0.15 : -0.15, i & 2 ? 0.1 : -0.1, i & 4 ? 1.4 : 1),
   );
   const lookFrom = (view: ViewName, free = { width: 1, height: 1 }) => {
+    const { eye, target } = fitted(viewDirection(view), corners, camera, free);
     camera.up.set(0, 0, 1);
-    camera.position.copy(cameraPosition(view, corners, center, camera, free));
-    camera.lookAt(center);
+    camera.position.copy(eye);
+    camera.lookAt(target);
     camera.updateMatrixWorld();
   };
 
@@ -24,15 +31,27 @@ describe("views", () => {
     expect(directionLetter(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1))).toBe("S");
   });
 
-  test("EachFitsTheSceneIntoTheFreeArea", () => {
-    for (const view of ["home", "front", "left", "top"] as const) {
+  test("EachFillsTheFreeAreaAndKeepsWithinIt", () => {
+    for (const view of viewNames) {
       lookFrom(view, { width: 0.6, height: 0.8 });
-      for (const corner of corners) {
-        const { x, y } = corner.clone().project(camera);
-        expect(Math.abs(x), view).toBeLessThanOrEqual(0.6);
-        expect(Math.abs(y), view).toBeLessThanOrEqual(0.8);
-      }
+      const seen = corners.map((corner) => corner.clone().project(camera));
+      const across = seen.map(({ x }) => x / 0.6);
+      const along = seen.map(({ y }) => y / 0.8);
+      for (const share of [...across, ...along]) expect(Math.abs(share), view).toBeLessThanOrEqual(1);
+      const span = (shares: number[]) => (Math.max(...shares) - Math.min(...shares)) / 2;
+      expect(Math.max(span(across), span(along)), view).toBeGreaterThan(0.93);
     }
+  });
+
+  test("ASceneWithoutRibsOpensFromAbove", () => {
+    const box = new THREE.Box3(new THREE.Vector3(), new THREE.Vector3(1, 1, 1));
+    expect(viewDirection(openingView(box, false)).z).toBeGreaterThan(0);
+  });
+
+  test("TheFirstIsFromThePatientsRightAndSlightlyBelow", () => {
+    const { x, y, z } = viewDirection("home");
+    expect([Math.sign(x), Math.sign(y), Math.sign(z)]).toEqual([-1, -1, -1]);
+    expect(Math.abs(z)).toBeLessThan(Math.sin(Math.PI / 9));
   });
 
   test("APlanarSceneOpensPerpendicularly", () => {

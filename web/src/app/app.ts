@@ -48,12 +48,13 @@ import { Uploads } from "../session/uploads";
 import { Signal } from "../state/signal";
 import type { Clock } from "../timing/clock";
 import { Viewer } from "../viewer/viewer";
+import { viewpointKeys } from "../viewer/viewpoints";
 import { drawers } from "./drawers";
 import { dropZone } from "./drop_zone";
 import { stageInsets } from "./insets";
 import { SceneTools } from "./scene_tools";
 import { SecondView } from "./second_view";
-import { shortcuts } from "./shortcuts";
+import { type Shortcut, shortcuts } from "./shortcuts";
 import { StudentView } from "./student_view";
 import { testHook } from "./test_hook";
 
@@ -215,7 +216,7 @@ export class App {
     elementById("cards").append(...tools.cards, this.comparisonCard.element);
     new ResizeObserver(() => this.resize()).observe(elementById("cards"));
     const drop = dropZone(document.body, (file) => void this.comparisons.compare(file));
-    elementById("stage").append(drop, tools.forceLabel);
+    elementById("stage").append(drop, tools.forceLabel, tools.structures.label);
     if (this.secondView !== undefined) {
       elementById("stage").classList.add("split");
       elementById("view").after(this.secondView.element);
@@ -227,7 +228,8 @@ export class App {
     elementById("playback-slot").append(controlledGroup(this.participation, playbackPanel(controller)));
     elementById("readout-slot").append(this.timeline.element, this.readout.element);
     elementById("margins").append(...this.margins.elements);
-    elementById("views").append(...viewBar(viewer, elementById("view")));
+    const bar = viewBar(viewer, elementById("view"), tools.viewpoints, (name) => tools.visit(name));
+    elementById("views").append(...bar, tools.structures.search);
     elementById("banners").append(...banners(controller, this.connectionState, () => void this.chooser.show()));
   }
 
@@ -276,8 +278,16 @@ export class App {
         { key: "e", description: "Student or expert view", run: () => this.student.toggle() },
         { key: "PageDown", description: "Next step of the lesson", when, run: () => this.student.moveInLesson(1) },
         { key: "PageUp", description: "Step before", when, run: () => this.student.moveInLesson(-1) },
-        { key: "h", description: "Whole scene", run: () => viewer.goTo("home") },
-        { key: "f", description: "Front view", run: () => viewer.goTo("front") },
+        { key: "h", description: "Whole scene", run: () => this.tools.visit("home") },
+        { key: "f", description: "Front view", run: () => this.tools.visit("front") },
+        ...this.viewKeys(),
+        { key: "/", description: "Find a structure", run: () => elementById("find-structure").focus() },
+        {
+          key: "Escape",
+          description: "Show all structures again",
+          when: () => this.tools.structures.isolated.value !== undefined,
+          run: () => this.tools.structures.showAll(),
+        },
         { key: "p", description: "Save a screenshot", run: () => void photograph() },
         { key: "s", description: "Share, copy, compare", run: () => share.show() },
       ],
@@ -294,6 +304,18 @@ export class App {
       this.connectionBadge.element,
     );
     elementById("session-slot").append(sessionButton(controller, () => void this.chooser.show()));
+  }
+
+  /** The keys of the named views; a scene may lack some. */
+  private viewKeys(): Shortcut[] {
+    const { viewpoints } = this.tools;
+    const byKey = (key: string) => viewpoints.value.find((each) => each.key === key);
+    return viewpointKeys.map(([key, description]) => ({
+      key,
+      description,
+      when: () => byKey(key) !== undefined,
+      run: () => this.tools.visit(byKey(key)?.name ?? ""),
+    }));
   }
 
   /** Distributes what the connection receives. */

@@ -17,5 +17,8 @@ export function stageInsets(): Insets {
   stage.style.setProperty("--covered", `${bottom}px`);
   stage.style.setProperty("--covered-left", `${left}px`);
   stage.style.setProperty("--heads", `${heads}px`);
-  return { left, top: 48 + heads, bottom };
+  // A short bar lies beside the narrow top of the scene.
+  const bar = elementById("views");
+  const top = bar.offsetLeft + bar.offsetWidth < 0.45 * width ? 14 : 48;
+  return { left, top: top + heads, bottom };
 }

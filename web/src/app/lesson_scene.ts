@@ -38,7 +38,7 @@ export function showLessonView(
   layerStyles: LayerStyles,
 ): void {
   const view = viewNames.find((name) => name === camera);
-  if (view !== undefined) tools.lookFrom(view);
+  if (view !== undefined) tools.visit(view);
   const kind = cutKinds.find((name) => name === cut);
   if (kind !== undefined) tools.cut.set({ kind, fraction: 0.5, flipped: false });
   if (colouring !== "") tools.coloring.choose(fields.find((field) => field.kind === colouring)?.kind);

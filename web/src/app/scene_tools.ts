@@ -12,15 +12,18 @@ import { appearancePanel } from "../panels/view/appearance_panel";
 import { coloringCard } from "../panels/view/coloring_card";
 import { OrientationCube } from "../panels/view/orientation_cube";
 import { PickCard } from "../panels/view/pick_card";
+import { rememberedQuality } from "../panels/view/quality_row";
 import type { Comparisons } from "../session/comparisons";
 import type { ForceQueries, ForceRequest } from "../session/force_queries";
 import { Signal } from "../state/signal";
 import { Annotations } from "../viewer/annotations";
 import type { ViewOrientation } from "../viewer/camera_rig";
 import type { Cut } from "../viewer/clipping";
-import type { ViewName } from "../viewer/named_views";
+import { viewNames } from "../viewer/named_views";
 import type { OverlayKind } from "../viewer/overlays";
 import type { Viewer } from "../viewer/viewer";
+import { type Viewpoint, viewpoints } from "../viewer/viewpoints";
+import { SceneStructures } from "./scene_structures";
 
 /** The viewer's local tools: colours, ghost, labels, orientation cube, clipping, and picked and tracked vertices. */
 export class SceneTools {
@@ -37,6 +40,12 @@ export class SceneTools {
   readonly labels = new Signal(false);
   readonly cut = new Signal<Cut>({ kind: "none", fraction: 0.5, flipped: false });
   readonly ghost = new Signal<GhostKind>("none");
+  readonly quality = rememberedQuality();
+  readonly structures: SceneStructures;
+  /** The named views of the scene. */
+  readonly viewpoints = new Signal<Viewpoint[]>([]);
+  /** The cut of the named view that is shown. */
+  private visitedCut: Cut | undefined;
   private readonly pickCard: PickCard;
   private readonly ghosts: GhostSelector;
   private bodies: Body[] = [];
@@ -57,13 +66,15 @@ export class SceneTools {
     this.ghosts = new GhostSelector(viewer, arrays, this.ghost);
     this.pickCard = new PickCard(this.trackedVertices, forces.onVertex);
     this.annotations = new Annotations(viewer);
-    this.cube = new OrientationCube((view) => viewer.goTo(view));
-    this.cards = [coloringCard(this.coloring), this.pickCard.element];
-    const { labels, ghost } = this;
+    this.cube = new OrientationCube((view) => this.visit(view));
+    this.structures = new SceneStructures(viewer, layerStyles);
+    this.cards = [coloringCard(this.coloring), this.structures.card, this.pickCard.element];
+    const { labels, ghost, quality } = this;
     this.panel = appearancePanel({
       layerStyles,
       labels,
       ghost,
+      quality,
       forceKinds: forces.kinds,
       overlays: this.overlays,
       coloring: this.coloring,
@@ -77,6 +88,7 @@ export class SceneTools {
     labels.subscribe((on) => this.annotations.setLabels(on));
     layerStyles.all.subscribe((all) => this.annotations.setLayers(all));
     this.overlays.subscribe((shown) => viewer.showOverlays(shown));
+    quality.subscribe((chosen) => viewer.setQuality(chosen));
     this.coloring.field.subscribe(() => {
       this.updateFields();
       this.replayForces();
@@ -89,7 +101,11 @@ export class SceneTools {
     });
     comparisons.surfaceVisible.subscribe(() => this.updateComparedSurface());
     forces.magnitudes.subscribe(() => this.updateColors());
-    viewer.enablePicking((ref) => this.trackedVertices.picked.set(ref));
+    this.structures.isolated.subscribe((structure) => structure && this.trackedVertices.picked.set(undefined));
+    viewer.enablePicking((ref) => {
+      this.trackedVertices.picked.set(ref);
+      this.structures.choose(ref);
+    });
     this.trackedVertices.picked.subscribe(() => {
       this.replayForces();
       this.updateMarkers();
@@ -101,6 +117,8 @@ export class SceneTools {
   start(bodies: Body[], tissue: ReadonlySet<string>, diagram: boolean): void {
     this.bodies = bodies;
     this.tissue = bodies.filter(({ name }) => tissue.has(name));
+    this.viewpoints.set(viewpoints(bodies, this.viewer.bounds));
+    this.structures.start(bodies);
     this.coloring.start(this.tissue);
     void this.forces.start(this.tissue[0]?.name);
     this.trackedVertices.clear();
@@ -116,8 +134,13 @@ export class SceneTools {
     this.ghosts.showBeside(arrays);
   }
 
-  /** Moves the camera to a named view. */
-  lookFrom(view: ViewName): void {
+  /** Shows a view by its name; unknown names change nothing. Its cut replaces that of the view before. */
+  visit(name: string): void {
+    const viewpoint = this.viewpoints.value.find((each) => each.name === name);
+    const view = viewpoint?.view ?? viewNames.find((each) => each === name);
+    if (view === undefined) return;
+    if (viewpoint?.cut !== undefined) this.cut.set((this.visitedCut = { ...viewpoint.cut }));
+    else if (this.cut.value === this.visitedCut) this.cut.set({ ...this.cut.value, kind: "none" });
     this.viewer.goTo(view);
   }
 

@@ -142,6 +142,7 @@ export class SecondView {
     layerStyles.all.subscribe(() => this.applyLayerStyles());
     tools.overlays.subscribe((shown) => this.viewer.showOverlays(shown));
     tools.labels.subscribe((on) => this.annotations.setLabels(on));
+    tools.quality.subscribe((chosen) => this.viewer.setQuality(chosen));
     tools.cut.subscribe((cut) => {
       this.viewer.setCut(cut);
       this.annotations.setLayers(layerStyles.all.value);

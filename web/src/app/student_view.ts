@@ -194,6 +194,6 @@ export class StudentView {
     tools.coloring.choose("displacement");
     tools.coloring.setTop(displacementTop);
     tools.ghost.set("beside");
-    tools.lookFrom("front");
+    tools.visit("front");
   }
 }

@@ -18,6 +18,8 @@ export interface TestHook {
   vertex(body: string, index: number): [number, number, number];
   /** Camera position [m]. */
   eye(): [number, number, number];
+  /** True while the camera flies to a view. */
+  flying(): boolean;
 }
 
 declare global {
@@ -43,6 +45,7 @@ export function testHook(bodies: () => Body[], frames: FrameBuffer, viewer: View
       const { x, y, z } = viewer.rig.pose.eye;
       return [x, y, z];
     },
+    flying: () => viewer.rig.flying,
     vertices: (body) => find(body).rest.length / 3,
     vertex: (body, index) => {
       if (frames.arrays === undefined) throw new RangeError("There is no frame yet.");

@@ -3,7 +3,6 @@ const slowInterval = 70;
 /** Slow frames in a row before the resolution is reduced, and idle time before one drawing in full resolution [ms]. */
 const maxSlowFrames = 6;
 const restDelay = 400;
-const minRatio = 0.5;
 
 /**
  * Device pixels per CSS pixel. A slow machine draws fewer pixels during motion, so that the page stays responsive, and
@@ -16,9 +15,14 @@ export class AdaptiveResolution {
   private lastDrawn = -Infinity;
   private lastFrame = -Infinity;
 
-  constructor(private readonly fullRatio: number) {
-    this.movingRatio = fullRatio;
-    this.currentRatio = fullRatio;
+  /** The full ratios at rest and during motion, and the least one during motion. */
+  constructor(
+    private readonly fullRatio: number,
+    movingRatio = fullRatio,
+    private readonly leastRatio = 0.5,
+  ) {
+    this.movingRatio = movingRatio;
+    this.currentRatio = movingRatio;
   }
 
   /** Current number of device pixels per CSS pixel. */
@@ -43,6 +47,6 @@ export class AdaptiveResolution {
     this.slowFrames = interval > slowInterval ? this.slowFrames + 1 : 0;
     if (this.slowFrames < maxSlowFrames) return;
     this.slowFrames = 0;
-    this.movingRatio = Math.max(Math.min(minRatio, this.fullRatio), this.movingRatio * 0.7);
+    this.movingRatio = Math.max(Math.min(this.leastRatio, this.fullRatio), this.movingRatio * 0.7);
   }
 }

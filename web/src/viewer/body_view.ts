@@ -4,10 +4,14 @@ import { type Body, floatsPerPose, type FrameArrays, positionsOf } from "../geom
 import { edgesOf } from "../geometry/edges";
 import { computeNormals } from "../geometry/normals";
 import { tendonWeights } from "../geometry/tendon";
-import { pointMaterial, setOpacity, surfaceMaterial } from "./materials";
+import { pointMaterial, setDefine, setOpacity, surfaceMaterial } from "./materials";
 import { addOverlays, type Overlay, type OverlayHost, type OverlayKind } from "./overlays";
 import { ThickLines } from "./thick_lines";
+import { tissueOf } from "./tissues";
 import { VertexColors } from "./vertex_colors";
+
+/** Opacity of a faded body. */
+const fadedOpacity = 0.07;
 
 /**
  * The three.js objects of one body. All objects share one position buffer, so that a frame needs one copy and one
@@ -18,9 +22,12 @@ export class BodyView implements OverlayHost {
   readonly positions: THREE.BufferAttribute;
   private knownEdges: Uint32Array<ArrayBuffer> | undefined;
   private readonly normals: THREE.BufferAttribute | undefined;
-  private readonly surface: THREE.MeshStandardMaterial | undefined;
+  private readonly mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial> | undefined;
   private readonly vertexColors: VertexColors | undefined;
   private opacity: number;
+  private faded = false;
+  /** Bounding box at rest, in the frame of the body [m]. */
+  readonly restBox: THREE.Box3;
   private readonly overlays: Overlay[];
   private readonly thick: ThickLines[] = [];
 
@@ -32,14 +39,15 @@ export class BodyView implements OverlayHost {
     this.group.name = body.name;
     this.opacity = body.opacity;
     this.positions = new THREE.BufferAttribute(body.rest.slice(), 3);
+    this.restBox = new THREE.Box3().setFromArray(body.rest);
     const streamed = body.placement === Placement.STREAMED;
     if (streamed) this.positions.setUsage(THREE.DynamicDrawUsage);
     const solid = body.triangles.length > 0;
     if (solid) {
       this.normals = new THREE.BufferAttribute(new Float32Array(body.rest.length), 3);
-      const { geometry, material } = this.addSurface(this.normals);
+      this.mesh = this.addSurface(this.normals);
+      const { geometry, material } = this.mesh;
       const own = body.rigidLinks.length > 0 ? this.tendonColors() : undefined;
-      this.surface = material;
       this.vertexColors = new VertexColors(geometry, material, body.color, own);
     }
     if (!solid || diagram) this.addPointsAndLines(solid ? lighter(body.color) : body.color);
@@ -70,7 +78,12 @@ export class BodyView implements OverlayHost {
     const { body } = this;
     computeNormals(body.rest, body.triangles, normals.array as Float32Array);
     const geometry = this.geometry(body.triangles).setAttribute("normal", normals);
-    const mesh = new THREE.Mesh(geometry, surfaceMaterial(body.color, body.opacity));
+    const moving = body.placement === Placement.STREAMED;
+    if (moving) geometry.setAttribute("rest", new THREE.BufferAttribute(body.rest, 3));
+    const material = surfaceMaterial(body.color, body.opacity, tissueOf(body), moving, middleOf(this.restBox));
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.castShadow = body.opacity === 1;
+    mesh.receiveShadow = true;
     mesh.frustumCulled = false;
     this.group.add(mesh);
     return mesh;
@@ -125,8 +138,47 @@ export class BodyView implements OverlayHost {
   setOpacity(opacity: number): void {
     this.opacity = opacity;
     this.group.visible = opacity > 0;
+    if (this.mesh === undefined) return;
     // Field colours are opaque, since their scale could not be read through a transparent surface.
-    if (this.surface !== undefined) setOpacity(this.surface, this.vertexColors?.active ? 1 : opacity);
+    const shown = this.vertexColors?.active ? 1 : opacity;
+    setOpacity(this.mesh.material, this.faded ? Math.min(shown, fadedOpacity) : shown);
+    this.mesh.material.forceSinglePass = this.faded;
+    this.mesh.castShadow = opacity === 1 && !this.faded;
+  }
+
+  /** True if the body is faded. */
+  get isFaded(): boolean {
+    return this.faded;
+  }
+
+  /** Fades the body to an outline, so that another one is seen through it. */
+  setFaded(faded: boolean): void {
+    this.faded = faded;
+    this.setOpacity(this.opacity);
+  }
+
+  /** Greys all but some vertices; undefined for none. */
+  setRegion(vertices: number[] | undefined): void {
+    if (vertices === undefined) return void this.mesh?.geometry.deleteAttribute("apart");
+    const apart = new Uint8Array(this.body.rest.length / 3).fill(255);
+    for (const vertex of vertices) apart[vertex] = 0;
+    this.mesh?.geometry.setAttribute("apart", new THREE.BufferAttribute(apart, 1, true));
+  }
+
+  /** Sets how much each vertex is covered by surfaces nearby, 0 to 255. */
+  setOcclusion(covered: Uint8Array<ArrayBuffer>): void {
+    this.mesh?.geometry.setAttribute("occlusion", new THREE.BufferAttribute(covered, 1, true));
+  }
+
+  /** Shows or hides details that cost time in each pixel. */
+  setDetailed(detailed: boolean): void {
+    if (this.mesh !== undefined) setDefine(this.mesh.material, "DETAILED", detailed);
+  }
+
+  /** Sets whether a plane clips the scene, so that the inside of closed bodies is seen. */
+  setCut(cut: boolean): void {
+    const closed = this.body.opacity === 1 && tissueOf(this.body).section !== undefined;
+    if (this.mesh !== undefined && closed) setDefine(this.mesh.material, "SECTION", cut);
   }
 
   /** Sets vertex colours, three sRGB bytes per vertex; undefined restores the body's own colours. */
@@ -149,6 +201,10 @@ export class BodyView implements OverlayHost {
       }
     });
   }
+}
+
+function middleOf({ min, max }: THREE.Box3): THREE.Vector2 {
+  return new THREE.Vector2((min.x + max.x) / 2, (min.y + max.y) / 2);
 }
 
 function lighter(color: string): string {

@@ -1,7 +1,18 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { CameraPose } from "../geometry/camera_pose";
-import { cameraPosition, directionLetter, type FreeArea, openingView, planeAxes, type ViewName } from "./named_views";
+import { flightAt } from "./flight";
+import {
+  directionLetter,
+  fitted,
+  type FreeArea,
+  openingView,
+  type Outlook,
+  planeAxes,
+  type Side,
+  viewDirection,
+  type ViewName,
+} from "./named_views";
 
 /** The orientation and scale of a view. */
 export interface ViewOrientation {
@@ -22,7 +33,10 @@ export interface Insets {
   bottom: number;
 }
 
-const flightDuration = 350;
+/** Duration of a flight to another view [ms]. */
+const flightDuration = 700;
+/** Fraction of the free area that a single structure fills. */
+const closeness = 0.62;
 /** Fraction of the distance to the remote camera that remains after one frame. */
 const chaseRemainder = 0.7;
 
@@ -32,14 +46,16 @@ export class CameraRig {
   private readonly controls: OrbitControls;
   private points: THREE.Vector3[] = [];
   private center = new THREE.Vector3();
-  private homeView: ViewName = "home";
+  private homeView: Side = "home";
   private freeArea: FreeArea = { width: 1, height: 1 };
   /** The named view that the camera shows or moves to; undefined after the user moved it. */
   private namedView: ViewName | undefined;
   private extent = 1;
   private flat = false;
   private remotePose: CameraPose | undefined;
-  private flight: { from: THREE.Vector3; to: THREE.Vector3; start: number } | undefined;
+  /** What the camera showed before it flew to a structure. */
+  private before: { outlook: Outlook; view: ViewName | undefined } | undefined;
+  private flight: { from: Outlook; to: Outlook; start: number } | undefined;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -54,8 +70,8 @@ export class CameraRig {
     this.controls.addEventListener("start", () => (this.flight = this.namedView = this.remotePose = undefined));
   }
 
-  /** Fits the camera to a new scene; `points` is a sample of its vertices. */
-  frame(points: THREE.Vector3[]): void {
+  /** Fits the camera to a new scene; `points` is a sample of its vertices, `caged` is true if it has a rib cage. */
+  frame(points: THREE.Vector3[], caged: boolean): void {
     const box = new THREE.Box3().setFromPoints(points);
     this.points = points;
     this.center = box.getCenter(new THREE.Vector3());
@@ -65,25 +81,57 @@ export class CameraRig {
     this.camera.far = size * 20;
     this.controls.minDistance = size / 20;
     this.controls.maxDistance = size * 8;
-    this.homeView = openingView(box);
+    this.homeView = openingView(box, caged);
     this.flat = planeAxes(box) !== undefined;
     this.goTo("home", true);
   }
 
   /** Moves to a named view. */
   goTo(view: ViewName, atOnce = this.reducedMotion()): void {
-    this.namedView = view;
-    this.remotePose = undefined;
-    this.controls.target.copy(this.center);
     const side = view === "home" ? this.homeView : view;
-    // A planar scene needs room for its axes.
-    const air = this.flat ? 0.84 : 1;
-    const free = { width: air * this.freeArea.width, height: air * this.freeArea.height };
-    const to = cameraPosition(side, this.points, this.center, this.camera, free);
-    this.flight = undefined;
-    if (atOnce) this.camera.position.copy(to);
-    else this.flight = { from: this.camera.position.clone(), to, start: performance.now() };
+    this.flyTo(fitted(viewDirection(side), this.points, this.camera, this.roomyArea()), atOnce);
+    this.before = undefined;
+    this.namedView = view;
+  }
+
+  /** Moves to where `points` fill the free area, looking in the same direction as now. */
+  lookAt(points: THREE.Vector3[], atOnce = this.reducedMotion()): void {
+    const away = this.camera.position.clone().sub(this.controls.target).normalize();
+    const { width, height } = this.freeArea;
+    const free = { width: closeness * width, height: closeness * height };
+    if (points.length === 0) return;
+    this.before ??= { outlook: this.flight?.to ?? this.outlook, view: this.namedView };
+    this.flyTo(fitted(away, points, this.camera, free), atOnce);
+  }
+
+  /** Moves back to where the camera was before `lookAt`. */
+  flyBack(atOnce = this.reducedMotion()): void {
+    const { before } = this;
+    this.before = undefined;
+    if (before?.view !== undefined) this.goTo(before.view, atOnce);
+    else if (before !== undefined) this.flyTo(before.outlook, atOnce);
+  }
+
+  private flyTo(to: Outlook, atOnce: boolean): void {
+    this.namedView = this.remotePose = this.flight = undefined;
+    if (atOnce) this.show(to);
+    else this.flight = { from: this.outlook, to, start: performance.now() };
     this.onChange();
+  }
+
+  private show({ eye, target }: Outlook): void {
+    this.camera.position.copy(eye);
+    this.controls.target.copy(target);
+  }
+
+  private get outlook(): Outlook {
+    return { eye: this.camera.position.clone(), target: this.controls.target.clone() };
+  }
+
+  /** A planar scene needs room for its axes. */
+  private roomyArea(): FreeArea {
+    const air = this.flat ? 0.84 : 1;
+    return { width: air * this.freeArea.width, height: air * this.freeArea.height };
   }
 
   /** Centres the scene in the part of the canvas that panels do not cover. */
@@ -95,6 +143,16 @@ export class CameraRig {
     this.camera.setViewOffset(width, height, -left / 2, (bottom - top) / 2, width, height);
     this.camera.updateProjectionMatrix();
     if (this.namedView !== undefined) this.goTo(this.namedView, true);
+  }
+
+  /** True while the camera flies to a view. */
+  get flying(): boolean {
+    return this.flight !== undefined;
+  }
+
+  /** Centre of the scene at rest [m]. */
+  get sceneCenter(): THREE.Vector3 {
+    return this.center;
   }
 
   /** Distance from the camera to its target, and the extent of the scene [m]. */
@@ -146,14 +204,9 @@ export class CameraRig {
     this.controls.update();
   }
 
-  private fly({ from, to, start }: { from: THREE.Vector3; to: THREE.Vector3; start: number }, now: number): void {
-    const { target } = this.controls;
+  private fly({ from, to, start }: { from: Outlook; to: Outlook; start: number }, now: number): void {
     const part = THREE.MathUtils.smootherstep((now - start) / flightDuration, 0, 1);
-    // Moves along a sphere and not through the patient.
-    const distance = THREE.MathUtils.lerp(from.distanceTo(target), to.distanceTo(target), part);
-    const away = from.clone().sub(target).lerp(to.clone().sub(target), part);
-    if (away.lengthSq() < 1e-12) away.copy(to).sub(target);
-    this.camera.position.copy(target).addScaledVector(away.normalize(), distance);
+    this.show(flightAt(from, to, part));
     if (part >= 1) this.flight = undefined;
     this.onChange();
   }

@@ -22,7 +22,7 @@ export function enablePicking(
   canvas.addEventListener("pointerup", (event) => {
     if (down === undefined || event.timeStamp - down.timeStamp > maxDuration) return;
     if (Math.hypot(event.offsetX - down.offsetX, event.offsetY - down.offsetY) > maxMovement) return;
-    const visible = views().filter(({ group }) => group.visible);
+    const visible = views().filter(({ group, isFaded }) => group.visible && !isFaded);
     const bodies = visible.map((view) => ({ positions: view.worldPositions(), triangles: view.body.triangles }));
     const found = pickVertex(pointerOf(event, canvas), camera, bodies, cut());
     picked(found && { body: visible[found.body].body.name, vertex: found.vertex });

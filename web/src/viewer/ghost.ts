@@ -56,6 +56,7 @@ function translucentMesh(positions: Float32Array, triangles: Uint32Array, colors
     ...colors,
     transparent: true,
     opacity: 0.3,
+    toneMapped: false,
     depthWrite: false,
     side: THREE.DoubleSide,
   });

@@ -23,7 +23,13 @@ export class Markers {
   }
 
   private make(): THREE.Mesh {
-    const material = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.95, fog: false });
+    const material = new THREE.MeshBasicMaterial({
+      depthTest: false,
+      transparent: true,
+      opacity: 0.95,
+      fog: false,
+      toneMapped: false,
+    });
     const mesh = new THREE.Mesh(this.ball, material);
     mesh.renderOrder = 5;
     return mesh;

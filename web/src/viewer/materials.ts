@@ -1,32 +1,48 @@
 import * as THREE from "three";
+import { addTissue, type TissueUniforms } from "./tissue_shader";
+import type { Tissue } from "./tissues";
 
-/** A lit surface material. Transparent surfaces are denser towards their silhouette, like glass and wet membranes. */
-export function surfaceMaterial(color: string, opacity: number): THREE.MeshStandardMaterial {
+/** A lit surface material for a tissue. `moving`: the geometry has its rest positions in the attribute `rest`. */
+export function surfaceMaterial(
+  color: string,
+  opacity: number,
+  tissue: Tissue,
+  moving: boolean,
+  fibreAxis: THREE.Vector2,
+): THREE.MeshStandardMaterial {
   const material = new THREE.MeshStandardMaterial({
     color,
-    roughness: 0.5,
+    roughness: tissue.roughness,
     metalness: 0,
     side: THREE.DoubleSide,
     polygonOffset: true,
     polygonOffsetFactor: 1,
     polygonOffsetUnits: 1,
+    shadowSide: THREE.DoubleSide,
   });
-  material.onBeforeCompile = (shader) => {
-    shader.fragmentShader = shader.fragmentShader.replace(
-      "#include <opaque_fragment>",
-      `#ifndef OPAQUE
-         float facing = abs(dot(normal, normalize(vViewPosition)));
-         diffuseColor.a *= mix(1.0 + 1.6 * (1.0 - diffuseColor.a), 0.75, facing);
-       #endif
-       #ifdef PAINTED
-         // Colours that are read off a scale keep to it: light gives them shape, and no gloss.
-         outgoingLight = mix(reflectedLight.directDiffuse + reflectedLight.indirectDiffuse, diffuseColor.rgb, 0.55);
-       #endif
-       #include <opaque_fragment>`,
-    );
+  material.defines = { ...material.defines, TISSUE: "", DETAILED: "", ...(moving ? { MOVING: "" } : {}) };
+  const uniforms: TissueUniforms = {
+    sheen: { value: tissue.sheen },
+    fibres: { value: tissue.fibres },
+    fibreAxis: { value: fibreAxis },
+    spots: { value: tissue.spots },
+    spotsPerMetre: { value: 1 / tissue.spotSize },
+    scatter: { value: tissue.scatter },
+    section: { value: new THREE.Color(tissue.section ?? color) },
   };
+  material.onBeforeCompile = (shader) => addTissue(shader, uniforms);
   setOpacity(material, opacity);
   return material;
+}
+
+/** Sets or removes a define of the shader. */
+export function setDefine(material: THREE.Material, name: string, on: boolean): void {
+  const defines = { ...material.defines };
+  if (name in defines === on) return;
+  if (on) defines[name] = "";
+  else delete defines[name];
+  material.defines = defines;
+  material.needsUpdate = true;
 }
 
 /** Sets the opacity, 0 to 1; transparent materials do not write depth. */
@@ -40,7 +56,14 @@ export function setOpacity(material: THREE.Material, opacity: number): void {
 
 /** Lines of one pixel; `onTop` disables the depth test. */
 export function lineMaterial(color: string, opacity: number, onTop: boolean): THREE.LineBasicMaterial {
-  return new THREE.LineBasicMaterial({ color, opacity, transparent: true, depthTest: !onTop, depthWrite: false });
+  return new THREE.LineBasicMaterial({
+    color,
+    opacity,
+    transparent: true,
+    depthTest: !onTop,
+    depthWrite: false,
+    toneMapped: false,
+  });
 }
 
 /** Round points of `size` CSS pixels. */
@@ -51,6 +74,7 @@ export function pointMaterial(color: string, size: number): THREE.PointsMaterial
     sizeAttenuation: false,
     map: disc(),
     alphaTest: 0.5,
+    toneMapped: false,
   });
 }
 

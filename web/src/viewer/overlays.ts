@@ -92,7 +92,13 @@ function points(view: OverlayHost, index: Uint32Array<ArrayBuffer>, color: strin
 /** Arrows from the origin of each line in the direction of its force. */
 function arrows(lines: ActionLine[]): THREE.Group {
   const group = new THREE.Group();
-  const material = new THREE.MeshBasicMaterial({ color: lineColor, depthTest: false, transparent: true, opacity: 0.9 });
+  const material = new THREE.MeshBasicMaterial({
+    color: lineColor,
+    depthTest: false,
+    transparent: true,
+    opacity: 0.9,
+    toneMapped: false,
+  });
   for (const line of lines) group.add(arrow(line, material));
   return group;
 }

@@ -15,7 +15,8 @@ export class ThickLines {
     width: number,
   ) {
     this.ends = new Float32Array(3 * pairs.length);
-    this.object = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({ color, linewidth: width }));
+    const material = new LineMaterial({ color, linewidth: width, toneMapped: false });
+    this.object = new LineSegments2(new LineSegmentsGeometry(), material);
     this.object.frustumCulled = false;
     this.copyEnds();
     this.object.geometry.setPositions(this.ends);

@@ -30,6 +30,8 @@ export class VertexColors {
     this.material.color.set(colors === undefined ? this.color : "white");
     if (this.active) this.material.defines = { ...this.material.defines, PAINTED: "" };
     else delete this.material.defines?.PAINTED;
+    // Colours that are read off a scale have exactly its colours.
+    this.material.toneMapped = this.material.fog = !this.active;
     this.material.needsUpdate = true;
   }
 

@@ -1,5 +1,7 @@
 import * as THREE from "three";
 import type { Body, FrameArrays } from "../geometry/bodies";
+import { computeNormals } from "../geometry/normals";
+import { computeOcclusion } from "../geometry/occlusion";
 import type { Surface } from "../geometry/surface";
 import { type Marker, type VertexRef } from "../geometry/vertices";
 import { AdaptiveResolution } from "./adaptive_resolution";
@@ -8,11 +10,15 @@ import { CameraRig, type Insets, type ViewOrientation } from "./camera_rig";
 import { enablePicking } from "./click_picking";
 import { clippingPlane, type Cut, planeCoordinate } from "./clipping";
 import { TranslucentSurfaces } from "./ghost";
-import { addLights } from "./lights";
+import { StudioLights } from "./lights";
 import { Markers } from "./markers";
 import type { ViewName } from "./named_views";
 import { type OverlayKind, overlayKinds } from "./overlays";
 import { type Pull, Pulling } from "./pulling";
+import { pointerOf } from "./picking";
+import { onPointerRest } from "./pointer_rest";
+import { drawsInSoftware, type Quality, QualityChooser } from "./quality";
+import { surfaceVertex } from "./surface_picking";
 
 /** Scenes with at most this many vertices are drawn as diagrams. */
 const maxDiagramVertices = 2000;
@@ -47,10 +53,15 @@ export class Viewer {
   private readonly renderer: THREE.WebGLRenderer;
   private views: BodyView[] = [];
   private overlays: ReadonlySet<OverlayKind> = new Set();
-  private readonly resolution = new AdaptiveResolution(Math.min(devicePixelRatio, 2));
+  private readonly software = drawsInSoftware();
+  private readonly resolution = resolutionFor(this.software);
   private readonly ghost = new TranslucentSurfaces({ color: "#8fd0ff", emissive: "#2d5f86" });
   private readonly comparedSurface = new TranslucentSurfaces({ color: "#ffd166", emissive: "#7a5a12" });
   private readonly markers = new Markers();
+  private readonly lights: StudioLights;
+  private readonly quality: QualityChooser;
+  /** True if the bodies have no ambient occlusion yet. */
+  private unshaded = false;
   private cut: Cut = { kind: "none", fraction: 0.5, flipped: false };
   private box = new THREE.Box3();
   private dirty = true;
@@ -65,16 +76,18 @@ export class Viewer {
   ) {
     this.renderer = new THREE.WebGLRenderer({
       canvas,
-      antialias: true,
+      antialias: !this.software,
       alpha: true,
       powerPreference: "high-performance",
     });
-    // No tone mapping, so that layers have the colours of their swatches.
-    this.renderer.toneMapping = THREE.NoToneMapping;
+    this.renderer.toneMapping = THREE.ACESFilmicToneMapping;
+    this.renderer.toneMappingExposure = 0.88;
     this.renderer.setPixelRatio(this.resolution.ratio);
     this.rig = new CameraRig(canvas, () => this.refresh(), host.reducedMotion);
     this.scene.fog = this.fog;
-    addLights(this.scene, this.rig.camera);
+    this.quality = new QualityChooser(this.software);
+    this.lights = new StudioLights(this.scene, this.rig.camera, this.renderer);
+    this.lights.setQuality(this.quality.quality);
     this.scene.add(this.ghost.object, this.comparedSurface.object, this.markers.object);
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.renderer.setAnimationLoop((now) => this.onAnimationFrame(now));
@@ -96,15 +109,53 @@ export class Viewer {
     this.comparedSurface.clear();
     const diagram = verticesOf(bodies) <= maxDiagramVertices;
     this.views = bodies.map((body) => new BodyView(body, diagram));
-    for (const view of this.views) this.scene.add(view.group);
+    for (const view of this.views) {
+      view.setDetailed(this.quality.quality !== "plain");
+      this.scene.add(view.group);
+    }
+    this.unshaded = !diagram;
     this.showOverlays(this.overlays);
-    const sample = sampleVertices(bodies);
+    const sample = sampleVertices(shownAtFirst(bodies));
     this.box = new THREE.Box3().setFromPoints(sample);
     this.setCut(this.cut);
     this.resize();
-    this.rig.frame(sample);
+    this.rig.frame(
+      sample,
+      bodies.some(({ name }) => name.startsWith("rib-")),
+    );
     this.refresh();
     return diagram;
+  }
+
+  /** The quality of the picture. */
+  get pictureQuality(): Quality {
+    return this.quality.quality;
+  }
+
+  /** Sets the quality of the picture; undefined to choose it by the measured time of a drawing. */
+  setQuality(fixed: Quality | undefined): void {
+    this.quality.fixed = fixed;
+    this.applyQuality();
+  }
+
+  private applyQuality(): void {
+    const { quality } = this.quality;
+    this.lights.setQuality(quality);
+    for (const view of this.views) view.setDetailed(quality !== "plain");
+    this.refresh();
+  }
+
+  /** Computes ambient occlusion at rest, after the first drawing, which does not wait for it. */
+  private shade(): void {
+    this.unshaded = false;
+    const solid = this.views.filter(({ body }) => body.triangles.length > 0 && body.opacity > 0);
+    const surfaces = solid.map(({ body: { rest, triangles, opacity } }) => {
+      const normals = new Float32Array(rest.length);
+      computeNormals(rest, triangles, normals);
+      return { rest, triangles, normals, occludes: opacity === 1 };
+    });
+    computeOcclusion(surfaces).forEach((covered, i) => solid[i].setOcclusion(covered));
+    this.refresh();
   }
 
   /** The views of the bodies. */
@@ -146,6 +197,7 @@ export class Viewer {
     this.cut = cut;
     const plane = this.currentPlane();
     this.renderer.clippingPlanes = plane === undefined ? [] : [plane];
+    for (const view of this.views) view.setCut(plane !== undefined);
     this.refresh();
   }
 
@@ -202,6 +254,31 @@ export class Viewer {
     );
   }
 
+  /** Calls `rested` with the vertex under the resting pointer and its place [CSS pixels]; undefined if there is none. */
+  enableHover(rested: (vertex: VertexRef | undefined, x: number, y: number) => void): void {
+    const find = (event: PointerEvent) => {
+      const visible = this.views.filter(({ group, isFaded }) => group.visible && !isFaded);
+      const pointer = pointerOf(event, this.canvas);
+      const { extent } = this.rig.depth;
+      const vertex = surfaceVertex(pointer, this.rig.camera, visible, extent, this.currentPlane());
+      rested(vertex, event.offsetX, event.offsetY);
+    };
+    onPointerRest(this.canvas, find, () => rested(undefined, 0, 0));
+  }
+
+  /** Fades all bodies but one and flies to its vertices; undefined shows all, from where they were seen before. */
+  isolate(part: { body: string; vertices: number[] | undefined } | undefined): void {
+    for (const view of this.views) {
+      const own = view.body.name === part?.body;
+      view.setFaded(part !== undefined && !own);
+      view.setRegion(own ? part.vertices : undefined);
+    }
+    const view = this.views.find(({ body }) => body.name === part?.body);
+    if (view === undefined || part === undefined) this.rig.flyBack();
+    else this.rig.lookAt(placesOf(view.worldPositions(), part.vertices));
+    this.refresh();
+  }
+
   /** Moves the camera to a named view. */
   goTo(view: ViewName): void {
     this.rig.goTo(view);
@@ -241,6 +318,7 @@ export class Viewer {
       this.renderer.setPixelRatio(this.resolution.ratio);
       this.dirty = true;
     }
+    if (this.quality.recordFrame(now, this.dirty)) this.applyQuality();
     if (!this.dirty) return;
     this.dirty = false;
     const frame = this.host.frame();
@@ -254,15 +332,40 @@ export class Viewer {
     [this.fog.near, this.fog.far] = [distance - 0.1 * extent, distance + 0.75 * extent];
     const orientation = this.rig.orientation();
     this.markers.scale(markerSize / orientation.pixelsPerMetre);
+    this.lights.follow(this.rig.sceneCenter, extent);
     this.renderer.render(this.scene, this.rig.camera);
     this.drawn++;
     if (frame !== undefined && this.firstDrawTime < 0) this.firstDrawTime = performance.now();
+    if (frame !== undefined && this.unshaded) this.shade();
     this.host.afterDraw(orientation);
   }
 }
 
+/**
+ * Returns the resolution of a machine. Without a graphics card, smoothing edges costs as much as all the rest of a
+ * drawing; instead a scene at rest is drawn with twice the pixels. Fewer pixels in motion would save little.
+ */
+function resolutionFor(software: boolean): AdaptiveResolution {
+  const ratio = Math.min(devicePixelRatio, 2);
+  return software ? new AdaptiveResolution(2, ratio, 0.8) : new AdaptiveResolution(ratio);
+}
+
+/** Returns the positions of some vertices, at most about a thousand; of all if `vertices` is undefined. */
+function placesOf(positions: ArrayLike<number>, vertices: number[] | undefined): THREE.Vector3[] {
+  const all = vertices ?? Array.from({ length: positions.length / 3 }, (_, i) => i);
+  const stride = Math.ceil(all.length / 1000);
+  const some = all.filter((_, i) => i % stride === 0);
+  return some.map((i) => new THREE.Vector3().fromArray(positions, 3 * i));
+}
+
 function verticesOf(bodies: Body[]): number {
   return bodies.reduce((sum, { rest }) => sum + rest.length / 3, 0);
+}
+
+/** Returns the bodies that the scene does not hide; all if it hides all. */
+function shownAtFirst(bodies: Body[]): Body[] {
+  const shown = bodies.filter(({ opacity }) => opacity > 0);
+  return shown.length > 0 ? shown : bodies;
 }
 
 /** Returns some thousands of rest positions as a sample of the scene. */

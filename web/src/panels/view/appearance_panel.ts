@@ -10,6 +10,7 @@ import type { Cut } from "../../viewer/clipping";
 import type { OverlayKind } from "../../viewer/overlays";
 import { cutRows } from "./cut_rows";
 import { projectorRow } from "./projector_row";
+import { type QualityChoice, qualityRow } from "./quality_row";
 
 /** The settings that the panel changes. */
 export interface AppearanceSettings {
@@ -22,6 +23,7 @@ export interface AppearanceSettings {
   /** Returns the position of a cut along its axis [m]. */
   cutAt(cut: Cut): number;
   ghost: Signal<GhostKind>;
+  quality: Signal<QualityChoice>;
 }
 
 const overlayRows: [OverlayKind, string, string][] = [
@@ -56,6 +58,7 @@ export function appearancePanel(view: AppearanceSettings): HTMLElement {
     ...cut,
     ...rows,
     labels.row,
+    qualityRow(view.quality),
     projectorRow(),
   );
 }

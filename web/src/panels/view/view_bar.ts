@@ -1,27 +1,52 @@
 import { make } from "../../dom/elements";
-import type { ViewName } from "../../viewer/named_views";
+import type { Signal } from "../../state/signal";
+import type { Viewpoint } from "../../viewer/viewpoints";
 import type { Viewer } from "../../viewer/viewer";
 
-const views: [ViewName, string][] = [
+const buttons: [name: string, label: string][] = [
   ["home", "Home"],
   ["front", "Front"],
   ["left", "Left"],
   ["top", "Top"],
 ];
 
-/** Buttons for the named views, and the keys that move the camera. */
-export function viewBar(viewer: Viewer, canvas: HTMLElement): HTMLElement[] {
+/** Shows a view by its name. */
+export type Visit = (name: string) => void;
+
+/** Buttons and a list for the named views, and the keys that move the camera. */
+export function viewBar(
+  viewer: Viewer,
+  canvas: HTMLElement,
+  viewpoints: Signal<Viewpoint[]>,
+  visit: Visit,
+): HTMLElement[] {
   canvas.addEventListener("keydown", (event) => {
     const nudge = nudges[event.key];
     if (nudge === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
     viewer.rig.nudge(...nudge);
     event.preventDefault();
   });
-  return views.map(([view, label]) => {
-    const element = make("button", { type: "button", onclick: () => viewer.goTo(view) }, label);
-    element.dataset.view = view;
+  const row = buttons.map(([name, label]) => {
+    const element = make("button", { type: "button", onclick: () => visit(name) }, label);
+    element.dataset.view = name;
     return element;
   });
+  return [make("div", { className: "view-buttons" }, ...row), viewList(viewpoints, visit)];
+}
+
+/** A list of all views, with the key of each. */
+function viewList(viewpoints: Signal<Viewpoint[]>, visit: Visit): HTMLElement {
+  const list = make("select", { id: "viewpoints", ariaLabel: "Views", title: "Views and cuts by name" });
+  list.onchange = () => {
+    visit(list.value);
+    list.value = "";
+  };
+  viewpoints.subscribe((all) => {
+    const options = all.map(({ name, label, key }) => make("option", { value: name }, `${label} (${key})`));
+    list.replaceChildren(make("option", { value: "", hidden: true }, "Views"), ...options);
+    list.value = "";
+  });
+  return list;
 }
 
 const angle = Math.PI / 36;

@@ -1,0 +1,22 @@
+import { describe, expect, test } from "vitest";
+import { tissueKind, tissueOf } from "../../../web/src/viewer/tissues";
+
+describe("the tissue of a body", () => {
+  test.each([
+    ["diaphragm", "diaphragm", "muscle"],
+    ["ribs", "rib-3-left", "bone"],
+    ["cartilages", "cartilage-7-right", "cartilage"],
+    ["sternum", "xiphoid", "bone"],
+    ["spine", "t10", "bone"],
+    ["lungs", "lung-right", "lung"],
+    ["lungs", "lung-upper-left", "lung"],
+    ["cube", "cube", "other"],
+  ])("OfLayer %s AndName %s Is %s", (layer, name, kind) => expect(tissueKind({ layer, name })).toBe(kind));
+
+  test("OfBoneIsMattAndThatOfMuscleHasASheen", () => {
+    const [bone, muscle] = [tissueOf({ layer: "ribs", name: "rib" }), tissueOf({ layer: "diaphragm", name: "d" })];
+    expect(bone.roughness).toBeGreaterThan(muscle.roughness);
+    expect(bone.sheen).toBe(0);
+    expect(muscle.sheen).toBeGreaterThan(0);
+  });
+});

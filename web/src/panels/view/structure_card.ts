@@ -1,0 +1,41 @@
+import type { Structure } from "../../anatomy/structures";
+import { make } from "../../dom/elements";
+import type { Signal } from "../../state/signal";
+
+/** What the card does with the chosen structure. */
+export interface StructureActions {
+  /** Flies to the structure and fades all others. */
+  isolate(structure: Structure): void;
+  /** Shows all structures again. */
+  showAll(): void;
+}
+
+/** A card with the name of the chosen structure and its definition. */
+export function structureCard(
+  chosen: Signal<Structure | undefined>,
+  isolated: Signal<Structure | undefined>,
+  { isolate, showAll }: StructureActions,
+): HTMLElement {
+  const name = make("h2");
+  const latin = make("p", { className: "latin", lang: "la" });
+  const definition = make("p");
+  const alone = make("button", { type: "button", id: "structure-alone" });
+  const close = make("button", { type: "button", onclick: () => chosen.set(undefined) }, "Close");
+  const card = make("section", { id: "structure", className: "card", ariaLabel: "Structure" });
+  alone.onclick = () => {
+    if (isolated.value !== undefined) showAll();
+    else if (chosen.value !== undefined) isolate(chosen.value);
+  };
+  card.append(name, latin, definition, make("div", { className: "row" }, alone, close));
+  chosen.subscribe((structure) => {
+    card.hidden = structure === undefined;
+    name.textContent = structure?.name ?? "";
+    latin.textContent = structure?.latin ?? "";
+    definition.textContent = structure?.definition ?? "";
+  });
+  isolated.subscribe((structure) => {
+    alone.textContent = structure === undefined ? "Show alone" : "Show all";
+    alone.title = structure === undefined ? "Fly to it and fade all others" : "Show all structures again (Escape)";
+  });
+  return card;
+}

@@ -1,0 +1,54 @@
+import type { Body } from "../geometry/bodies";
+
+/** How a kind of tissue looks. */
+export interface Tissue {
+  /** 0 (mirror) to 1 (matt). */
+  roughness: number;
+  /** Strength of the sheen at grazing angles, 0 to 1. */
+  sheen: number;
+  /** Depth of the pattern of fibres around the vertical axis, 0 to 1. */
+  fibres: number;
+  /** Strength of irregular spots, 0 to 1, and their size [m]. */
+  spots: number;
+  spotSize: number;
+  /** Part of the light that the tissue scatters back from all sides, 0 to 1. */
+  scatter: number;
+  /** Colour of a cut through the tissue; undefined for tissue that is no closed body. */
+  section?: string;
+}
+
+const kinds = {
+  muscle: { roughness: 0.6, sheen: 0.14, fibres: 0.8, spots: 0.1, spotSize: 0.012, scatter: 0.1, section: "#7d2a24" },
+  bone: { roughness: 0.95, sheen: 0, fibres: 0, spots: 0.13, spotSize: 0.004, scatter: 0, section: "#c48f72" },
+  cartilage: {
+    roughness: 0.7,
+    sheen: 0.06,
+    fibres: 0,
+    spots: 0.05,
+    spotSize: 0.004,
+    scatter: 0.05,
+    section: "#9fb0ba",
+  },
+  lung: { roughness: 0.8, sheen: 0.1, fibres: 0, spots: 0.2, spotSize: 0.006, scatter: 0.4 },
+  other: { roughness: 0.6, sheen: 0.05, fibres: 0, spots: 0, spotSize: 1, scatter: 0 },
+} satisfies Record<string, Tissue>;
+
+/** The kinds of tissue. */
+export type TissueKind = keyof typeof kinds;
+
+const patterns: [RegExp, TissueKind][] = [
+  [/cartilage/, "cartilage"],
+  [/diaphragm|muscle|intercostal/, "muscle"],
+  [/rib|sternum|manubrium|xiphoid|spine|vertebra|bone/, "bone"],
+  [/lung|lobe/, "lung"],
+];
+
+/** Returns the kind of tissue of a body, from its layer and its name. */
+export function tissueKind({ layer, name }: Pick<Body, "layer" | "name">): TissueKind {
+  return patterns.find(([pattern]) => pattern.test(layer) || pattern.test(name))?.[1] ?? "other";
+}
+
+/** Returns how a body looks. */
+export function tissueOf(body: Pick<Body, "layer" | "name">): Tissue {
+  return kinds[tissueKind(body)];
+}
