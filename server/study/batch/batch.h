@@ -14,9 +14,9 @@ inline constexpr double kMostSampledNumbers = 400'000;  // of one run: samples t
 // A checked request. Immutable, thread-safe.
 class Batch {
  public:
-  // Compiles the scene, sets what the request leaves out and checks every run. INVALID_ARGUMENT names the field, such as
-  // "runs[3].parameters.breath_force"; the errors of `compile`; CANCELLED if `cancelled`, asked for every run, returns
-  // true.
+  // Compiles the scene, sets what the request leaves out and checks every run. INVALID_ARGUMENT names the field, such
+  // as "runs[3].parameters.breath_force"; the errors of `compile`; CANCELLED if `cancelled`, asked for every run,
+  // returns true.
   static absl::StatusOr<Batch> Make(v1::RunBatchRequest request, const Compiler& compile,
                                     const std::function<bool()>& cancelled);
 
