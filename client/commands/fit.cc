@@ -110,6 +110,7 @@ std::string FitUsageFault(const FitCommandOptions& options) {
 std::string SourceOf(const FitCommandOptions& options, const std::vector<std::string>& files) {
   if (!options.source.empty()) return options.source;
   std::vector<std::string> names;
+  names.reserve(files.size());
   for (const std::string& file : files) names.push_back(std::filesystem::path(file).filename().string());
   return absl::StrJoin(names, " and ");
 }
@@ -173,7 +174,7 @@ absl::Status WriteExpectedPerson(const FitCommandOptions& options, const SceneLu
   if (options.out.empty()) return absl::OkStatus();
   const std::string number = options.descent ? absl::StrFormat("a descent of %.1f mm", *options.descent)
                                              : absl::StrFormat("a tidal volume of %.2f l", *options.tidal_volume);
-  const absl::Status written =
+  absl::Status written =
       WriteExpectedScene(options.out, lungs, person, prediction, number, SourceOf(options, options.exhale));
   if (written.ok()) std::cerr << "wrote " << options.out << "\n";
   return written;

@@ -143,7 +143,7 @@ Split Sheet::SplitOf(int hinge) const {
       if (other < 0) continue;
       const Side& outer = Across(other, side.triangle);
       if (held_[outer.triangle]) continue;  // its curvature is not that of the plate
-      const Vector2d p = corners[(d + 1) % 3], q = corners[(d + 2) % 3], inner = corners[d];
+      const Vector2d &p = corners[(d + 1) % 3], &q = corners[(d + 2) % 3], &inner = corners[d];
       const Apex apex = ApexOf(Corner(side, d + 1), Corner(side, d + 2), Corner(outer, 0));
       const Vector2d edge = q - p, normal = Vector2d(edge.y(), -edge.x()).normalized();
       const Vector2d out = p + apex.foot * edge + apex.height / length * (normal.dot(inner - p) > 0 ? -1 : 1) * normal;

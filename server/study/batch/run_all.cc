@@ -86,6 +86,7 @@ absl::Status RunAll(const Batch& batch, absl::FunctionRef<bool(v1::BatchResult)>
   bool taken = true;
   {
     std::vector<std::jthread> workers;
+    workers.reserve(static_cast<size_t>(batch.threads()));
     for (int i = 0; i < batch.threads(); ++i) workers.emplace_back([&queue] { queue.Work(); });
     for (int done = 0; done < batch.size() && taken && queue.status().ok();) {
       if (std::optional<v1::BatchResult> result = queue.Take()) {
