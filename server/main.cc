@@ -19,7 +19,8 @@ int Refuse(const absl::Status& status) {
 }
 
 int Main(int argc, char** argv) {
-  setenv("GRPC_VERBOSITY", "NONE", 0);  // errors are returned as statuses
+  setenv("GRPC_VERBOSITY", "NONE", 0);       // errors are returned as statuses
+  setenv("GRPC_DNS_RESOLVER", "native", 0);  // names as other programs resolve them (nsswitch.conf)
   // Debian's Abseil checks every lock for deadlocks, which costs 5 % of streaming; the tests keep the check.
   absl::SetMutexDeadlockDetectionMode(absl::OnDeadlockCycle::kIgnore);
   CLI::App app("phrenicd: simulates the breathing diaphragm and serves it to viewers and programs.", "phrenicd");

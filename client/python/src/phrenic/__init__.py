@@ -12,7 +12,12 @@ a server that runs. `phrenic.aio` is the same for asyncio, `phrenic.gym` has env
 `phrenic.v1` the generated messages.
 """
 
-from . import aio, errors
+import os
+
+# gRPC resolves names as other programs do (nsswitch.conf); its own resolver knows DNS and /etc/hosts alone.
+os.environ.setdefault("GRPC_DNS_RESOLVER", "native")
+
+from . import aio, errors  # noqa: E402
 from .connection import Tls
 from .errors import Error
 from .frame import Body, Frame, State
