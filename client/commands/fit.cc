@@ -1,11 +1,11 @@
 // `phrenic register` and `phrenic fit`: a scene's lungs moved onto a person's, and the person's breath, in this
 // process.
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
@@ -230,8 +230,15 @@ int FitPerson(const Context& context, const FitCommandOptions& options) {
 }
 
 absl::Status CheckSceneFile(const std::string& file) {
-  if (absl::EndsWith(file, ".textproto")) return absl::OkStatus();
-  return absl::InvalidArgumentError("a scene's file ends in .textproto");
+  if (std::filesystem::path(file).extension() == ".textproto") return absl::OkStatus();
+  return absl::InvalidArgumentError("a scene's file is NAME.textproto");
+}
+
+absl::Status CheckSource(const std::string& text) {
+  constexpr size_t kLongest = 500;
+  const bool printable = std::all_of(text.begin(), text.end(), [](unsigned char c) { return c >= 0x20 && c < 0x7f; });
+  if (printable && text.size() <= kLongest) return absl::OkStatus();
+  return absl::InvalidArgumentError("a source is at most 500 characters of ASCII");
 }
 
 void AddExhale(CLI::App& command, std::vector<std::string>& files, bool required) {
@@ -252,7 +259,8 @@ void AddFiles(CLI::App& command, FitCommandOptions& options) {
                      "write the expected motion of the points and its spread (.csv, .vtp)");
   command.add_option("--out", options.out, "write the person's lungs and breath as a scene (.textproto)")
       ->check(ParsedBy(&CheckSceneFile));
-  command.add_option("--source", options.source, "what the points are of, for the scene (default: the files' names)");
+  command.add_option("--source", options.source, "what the points are of, for the scene (default: the files' names)")
+      ->check(ParsedBy(&CheckSource));
   command.add_flag("--show-landmarks", options.show_landmarks,
                    "add the landmarks of the unseen half to the scene, with what the fit leaves");
 }
@@ -277,7 +285,9 @@ CommandFunction SetUpFit(CLI::App& command) {
   command.add_option("--tidal-volume", options->tidal_volume, "change of the lungs' volume [l], with --exhale")
       ->check(NumberIn(0, 8));
   command.add_option("--modes", options->fit.numbers, "numbers that a breath is made of")->capture_default_str();
-  command.add_option("--split", options->fit.split, "seed of the random half that is fitted")->capture_default_str();
+  command.add_option("--split", options->fit.split, "seed of the random half that is fitted")
+      ->check(NumberIn(0, 4294967295))
+      ->capture_default_str();
   command.add_flag("--assimilate", options->fit.assimilate,
                    "add the smallest elastic deformation through the fitting half");
   AddDataFolder(command, options->data_dir);

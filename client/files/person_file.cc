@@ -7,6 +7,7 @@
 #include "client/files/scene_text.h"
 #include "client/files/whole_file.h"
 #include "server/fit/person_scene.h"
+#include "server/schema/schema.h"
 
 namespace phrenic::client {
 namespace {
@@ -14,6 +15,15 @@ namespace {
 constexpr int kMostLandmarks = 400;
 
 std::string SceneNameOf(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
+// Writes a scene that Phrenic takes. INVALID_ARGUMENT if it would refuse it.
+absl::Status WriteScene(const std::string& file, const v1::Scene& scene, const std::string& comment) {
+  if (absl::Status status = schema::Validate(scene); !status.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat("this motion is beyond that of a breath, so that ", file,
+                                                   " is not written: ", std::string(status.message())));
+  }
+  return WriteWhole(file, SceneText(scene, comment));
+}
 
 }  // namespace
 
@@ -28,7 +38,7 @@ absl::Status WriteFittedScene(const std::string& file, const SceneLungs& lungs, 
   if (landmarks) fit::AddLandmarks(fit, kMostLandmarks, scene);
   const std::string command = absl::StrCat("Written by phrenic fit --modes ", options.numbers, " --split ",
                                            options.split, " from landmark pairs: ", source, ".");
-  return WriteWhole(file, SceneText(scene, command));
+  return WriteScene(file, scene, command);
 }
 
 absl::Status WriteExpectedScene(const std::string& file, const SceneLungs& lungs, const fit::Person& person,
@@ -41,8 +51,7 @@ absl::Status WriteExpectedScene(const std::string& file, const SceneLungs& lungs
   const std::string description = absl::StrCat("Lungs of a person with the breath that ", number, " leads to expect.");
   const v1::Scene scene =
       fit::PersonScene({SceneNameOf(file), description, lungs.bodies, person.registered(), {preset}}, lungs.templates);
-  return WriteWhole(file,
-                    SceneText(scene, absl::StrCat("Written by phrenic fit from points at end exhale: ", source, ".")));
+  return WriteScene(file, scene, absl::StrCat("Written by phrenic fit from points at end exhale: ", source, "."));
 }
 
 }  // namespace phrenic::client

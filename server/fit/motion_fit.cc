@@ -1,6 +1,7 @@
 #include "server/fit/motion_fit.h"
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "server/fit/assimilation.h"
 
 namespace phrenic::fit {
@@ -30,6 +31,11 @@ Eigen::VectorXd FitAmplitudes(const Person& person, const Landmarks& fitting, co
   fit.person.amplitudes = estimate.value;
   fit.correlation = std::move(estimate.correlation);
   fit.volume = person.VolumeResponses().dot(estimate.value);
+  if (fit.volume < 0) {
+    fit.registered.doubts.push_back(
+        absl::StrFormat("the lungs lose %.2f l from exhale to inhale: are the points of exhale and inhale exchanged?",
+                        -1e3 * fit.volume));
+  }
   const PeopleMotion& people = ShippedPeople(options.numbers);
   for (size_t k = 0; k < person.amplitudes().size(); ++k) {
     const Amplitude& amplitude = person.amplitudes()[k];

@@ -34,6 +34,7 @@ Bounds BoundsOf(const LabelVolume& volume, const Mask& mask) {
 struct Landmarks {
   std::map<int, Bounds> vertebrae;
   Eigen::AlignedBox3d lower_ribs, sternum, lungs;
+  Eigen::AlignedBox3d right, left;  // lungs and lower ribs of a side
 };
 
 Landmarks Find(const LabelVolume& volume, const std::vector<Part>& parts) {
@@ -41,8 +42,13 @@ Landmarks Find(const LabelVolume& volume, const std::vector<Part>& parts) {
   for (const Part& part : parts) {
     const int number = part.anatomy.number();
     if (part.Is(v1::STRUCTURE_VERTEBRA)) marks.vertebrae[number] = BoundsOf(volume, part.mask);
-    if (part.Is(v1::STRUCTURE_RIB) && number >= 6) marks.lower_ribs.extend(BoundsOf(volume, part.mask).box);
-    if (part.Is(v1::STRUCTURE_LUNG)) marks.lungs.extend(BoundsOf(volume, part.mask).box);
+    const bool rib = part.Is(v1::STRUCTURE_RIB) && number >= 6, lung = part.Is(v1::STRUCTURE_LUNG);
+    if (rib || lung) {
+      const Eigen::AlignedBox3d box = BoundsOf(volume, part.mask).box;
+      (rib ? marks.lower_ribs : marks.lungs).extend(box);
+      if (part.anatomy.side() == v1::SIDE_RIGHT) marks.right.extend(box);
+      if (part.anatomy.side() == v1::SIDE_LEFT) marks.left.extend(box);
+    }
     if (part.Is(v1::STRUCTURE_STERNUM_BODY) || part.Is(v1::STRUCTURE_XIPHOID) || part.Is(v1::STRUCTURE_MANUBRIUM)) {
       marks.sternum.extend(BoundsOf(volume, part.mask).box);
     }
@@ -85,6 +91,27 @@ void SetTop(const Landmarks& marks, CageFrame& frame) {
   frame.top = number == 1 || marks.lungs.isEmpty() ? first.box.max().z() : marks.lungs.max().z();
   const double front = marks.sternum.isEmpty() ? frame.centre.y() : marks.sternum.max().y();
   frame.top_centre = (front + first.box.min().y()) / 2;
+}
+
+// FAILED_PRECONDITION if an axis is reversed: the left side must lie at larger x than the right one, and the spine
+// behind the middle of the cage. Up and down are a matter of the proportions.
+absl::Status CheckAxes(const Landmarks& marks, const Eigen::AlignedBox3d& cage) {
+  constexpr char kRemedy[] = "check the volume's affine (NIfTI is RAS, Phrenic and DICOM are LPS) and the label map";
+  double spine = 0;
+  for (const auto& [number, bounds] : marks.vertebrae) {
+    spine += bounds.mean.y() / static_cast<double>(marks.vertebrae.size());
+  }
+  if (spine < cage.center().y() - 0.1 * cage.sizes().y()) {
+    return absl::FailedPreconditionError(
+        absl::StrFormat("the spine lies %.0f mm in front of the middle of the cage: front and back are exchanged; %s",
+                        cage.center().y() - spine, kRemedy));
+  }
+  if (marks.left.isEmpty() || marks.right.isEmpty()) return absl::OkStatus();
+  const double apart = marks.left.center().x() - marks.right.center().x();
+  if (apart > 0) return absl::OkStatus();
+  return absl::FailedPreconditionError(
+      absl::StrFormat("the parts named left lie %.0f mm to the right of those named right: the sides are exchanged; %s",
+                      -apart, kRemedy));
 }
 
 // FAILED_PRECONDITION if the landmarks are not those of a person, lying or standing, in a volume of LPS millimetres.
@@ -148,6 +175,7 @@ absl::StatusOr<CageFrame> FindCageFrame(const LabelVolume& volume, const std::ve
   frame.wall_length = 0.65 * frame.width;
   SetTop(marks, frame);
   if (absl::Status status = CheckProportions(frame, cage); !status.ok()) return status;
+  if (absl::Status status = CheckAxes(marks, cage); !status.ok()) return status;
   return frame;
 }
 

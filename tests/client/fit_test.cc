@@ -91,6 +91,14 @@ TEST(Fit, OfOneNumberWritesASceneToo) {
   EXPECT_NEAR(gain, 0.0004, 0.00005) << json["measures"];
 }
 
+TEST(Fit, WritesNoSceneThatWouldBeRefused) {
+  const std::string points = WriteScratch("exhale.csv", EggPerson(500)), scene = Scratch("far.textproto");
+  const Outcome fit = FitCommand({"--exhale", points, "--descent", "150", "--out", scene});
+  EXPECT_NE(fit.code, 0);
+  EXPECT_THAT(fit.err, HasSubstr("beyond that of a breath"));
+  EXPECT_EQ(fit.err.find("wrote"), std::string::npos);
+}
+
 TEST(Fit, InvalidRequestsNameTheOptionOrTheRemedy) {
   const std::string points = WriteScratch("exhale.csv", EggPerson(500));
   const auto expect = [](std::vector<std::string> more, int code, const std::string& text) {
@@ -105,6 +113,9 @@ TEST(Fit, InvalidRequestsNameTheOptionOrTheRemedy) {
   expect({"--exhale", points, "--descent", "-3"}, 2, "--descent");
   expect({"--exhale", points, "--descent", "3", "--assimilate"}, 2, "belong to --landmarks");
   expect({"--landmarks", points, "--out", "x.stl"}, 2, ".textproto");
+  expect({"--landmarks", points, "--out", ".textproto"}, 2, "NAME.textproto");
+  expect({"--landmarks", points, "--source", "a\xff"}, 2, "--source");
+  expect({"--landmarks", points, "--split", "-1"}, 2, "--split");
   expect({"--landmarks", points, "--show-landmarks"}, 2, "--show-landmarks");
   expect({"--landmarks", points, "--modes", "9"}, 2, "--modes");
   expect({"--landmarks", WriteScratch("bad.csv", "a,b\n1,2\n")}, 1, "bad.csv:1: the first line must name the columns");

@@ -74,6 +74,19 @@ v1::Scene OddVolumes::pattern_;
 LabelVolume OddVolumes::whole_;
 std::map<Label, v1::LabelMeaning> OddVolumes::meanings_;
 
+TEST_F(OddVolumes, WithAnAxisReversedAreRefused) {
+  const auto reversed = [](int axis) {
+    LabelVolume volume = whole_;
+    volume.to_patient =
+        Eigen::Scaling(Eigen::Vector3d(Eigen::Vector3d::Ones() - 2 * Eigen::Vector3d::Unit(axis))) * volume.to_patient;
+    return std::string(Make(volume).message());
+  };
+  EXPECT_THAT(reversed(0), testing::HasSubstr("the sides are exchanged"));
+  EXPECT_THAT(reversed(1), testing::HasSubstr("front and back are exchanged"));
+  EXPECT_NE(reversed(2), "");
+  EXPECT_EQ(Make(whole_).message(), "");
+}
+
 // The size of what is fitted follows the height of the cage.
 TEST_F(OddVolumes, AThoraxAsTallAsAHouseIsRefused) {
   LabelVolume tall = whole_;

@@ -56,6 +56,37 @@ class BatchTest(SessionTest):
         self.assertEqual(runs[0].state_hash, runs[2].state_hash)
         self.assertEqual((len(runs[0].times), runs[0].diverged), (60, ""))
 
+    def test_a_run_that_diverges_before_its_first_sample_has_none(self):
+        bad = {"integrator": "explicit_euler", "time_step": 0.1}
+        runs = list(phrenic.batch("pressure-lungs", [{}, bad], seconds=3, fps=0.3))
+        self.assertEqual(len(runs), 2)
+        (run,) = [run for run in runs if run.index == 1]
+        self.assertNotEqual(run.diverged, "")
+        self.assertEqual({values.shape for values in run.measures.values()}, {run.times.shape})
+
+    def test_many_large_starts_are_sent_in_several_requests(self):
+        session = self.session("thorax-thesis", resolution_mm=16)
+        frame = session.step(1)
+        count = 12_000_000 // frame.state.positions.nbytes
+        runs = list(phrenic.batch("thorax-thesis", [{}] * count, seconds=1e-6, start=frame, resolution_mm=16))
+        self.assertEqual(sorted(run.index for run in runs), list(range(count)))
+        self.assertEqual(len({run.state_hash for run in runs}), 1)
+
+    def test_wrong_arguments_are_refused_by_name(self):
+        state = self.session("cube-springs").step(1).state
+        for words, arguments in (
+            ("starts: there is none for runs\\[2\\]", {"starts": [state, state]}),
+            ("start: give it or starts", {"start": state, "starts": [state] * 3}),
+            ("read: give names in a tuple", {"read": "positions"}),
+        ):
+            with self.assertRaisesRegex(phrenic.errors.InvalidArgument, words):
+                list(phrenic.batch("cube-springs", [{}] * 3, seconds=0.1, **arguments))
+        with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "a list of sets"):
+            list(phrenic.batch("cube-springs", {"breath_force": 1}, seconds=0.1))
+        many = [{"breath_force": 1}] * 299 + [{"breath_force": -1}]
+        with self.assertRaisesRegex(phrenic.errors.InvalidArgument, r"runs\[299\]"):
+            list(phrenic.batch("cube-springs", many, seconds=0.01))
+
     def test_an_unknown_parameter_ends_the_batch(self):
         with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "breath_force"):
             list(phrenic.batch("cube-springs", [{"breath_forse": 1}], seconds=0.1))

@@ -99,6 +99,10 @@ absl::StatusOr<std::unique_ptr<Motion>> LungModes::Make(const v1::LungModes& sce
     const auto bodies = builder.DeformableBodies(names, where);
     if (!bodies.ok()) return bodies.status();
     for (const int body : *bodies) {
+      const std::vector<int>& driven = builder.model.driven_vertices;
+      if (std::find(driven.begin(), driven.end(), builder.model.bodies[body].first_vertex) != driven.end()) {
+        return FieldError(where, absl::StrCat("body \"", builder.model.bodies[body].name, "\" has a motion already"));
+      }
       motion->Add(body, *lungs, builder);
       if (builder.stop.Stopped()) return builder.stop.status();
       vertices += motion->moved_.back().rest.cols();

@@ -106,6 +106,7 @@ TEST(LungModes, RefuseWhatIsNoLung) {
   const auto fault = [](const std::string& text) { return std::string(TryCompileText(text).status().message()); };
   const std::string named = "motions[0].lung_modes.lungs";
   EXPECT_THAT(fault(Lungs("") + Lung("third", "LEFT", 0.3)), testing::AllOf(HasSubstr(named), HasSubstr("one side")));
+  EXPECT_THAT(fault(Lungs("") + "motions { lung_modes { lungs: 'body:r' } }"), HasSubstr("has a motion already"));
   std::string plain = Lungs("");
   plain.replace(plain.find("STRUCTURE_LUNG"), 14, "STRUCTURE_DIAPHRAGM");
   EXPECT_THAT(fault(plain), testing::AllOf(HasSubstr(named), HasSubstr("\"r\" is no lung")));

@@ -27,7 +27,7 @@ from .errors import FailedPrecondition, InvalidArgument, OutOfRange
 from .operations import Scene, SimulationWarning
 from .session import Session
 from .spaces import Env
-from .tasks import DIVERGED, FOLLOW_VOLUME, KEEP_BREATHING, VENTILATE_COPD, Episode, Task
+from .tasks import DIVERGED, FOLLOW_VOLUME, KEEP_BREATHING, VENTILATE_COPD, Episode, Task, actions_of
 
 if TYPE_CHECKING:
     from .server import Server
@@ -79,7 +79,7 @@ class BreathingEnv(Env):
             server=self._server,
         )
         self._episode.first = self._session.measure("lung volume")
-        self._done = False
+        self._done, self._actions = False, 0
         return self._observe()
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
@@ -92,14 +92,15 @@ class BreathingEnv(Env):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", SimulationWarning)
                 session.set(**self.task.parameters(numbers))
-            session.step(session.ticks_until(session.time + self._interval), read=())
+            session.step(max(1, round(self._interval / session.time_step)), read=())
         except OutOfRange as error:
             self._done = True
             return self._last, DIVERGED, True, False, {"diverged": str(error)}
         observation, info = self._observe()
         suffocated = episode.suffocated(observation, session.time)
         reward = DIVERGED if suffocated else episode.reward(observation, numbers)
-        truncated = session.time >= self._seconds - 0.5 * session.time_step
+        self._actions += 1
+        truncated = not suffocated and self._actions >= actions_of(self._seconds, self._interval)
         self._done = truncated or suffocated
         return observation, reward, suffocated, truncated, info
 

@@ -7,21 +7,24 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
-from itertools import count, islice, repeat
-from typing import Any, Iterable, Iterator, Mapping, Optional, Sequence
+from itertools import repeat
+from typing import Any, Iterable, Iterator, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
 from .call import Call
-from .errors import InvalidArgument
+from .errors import Error, InvalidArgument
 from .frame import Frame, State, vectors
 from .operations import Scene, parameters_of, parts_of, source_of
 from .server import Server, default_server
 from .v1 import batch_pb2, state_pb2
 
 BLOCK = 256
-"""Runs of one request."""
+"""The most runs of one request."""
+BLOCK_BYTES = 8_000_000
+"""About the size of one request [byte]: half of what a server accepts."""
 
 
 @dataclass(frozen=True)
@@ -53,35 +56,63 @@ def batch(
     fps: float = 20,
     preset: str = "",
     resolution_mm: Optional[float] = None,
-    start: Optional[Frame] = None,
+    start: Union[Frame, State, None] = None,
     starts: Optional[Iterable[State]] = None,
     read: Sequence[str] = (),
     threads: Optional[int] = None,
     server: Optional[Server] = None,
 ) -> Iterator[Run]:
     """Runs the scene once for each set of live parameters and yields each run as it ends. `threads` runs are in progress
-    at a time (default: one a core of the server). `parameters` may be endless: 256 of them are taken at a time. The runs
+    at a time (default: one a core of the server). `parameters` may be endless: at most 256 of them are taken
+    at a time. The runs
     are the same, bit for bit, at any number of threads. `start`: a frame of a session of this scene, with "positions",
-    "velocities" and "scalars", from which every run goes on; `starts`: a state a run; default: the scene's start. `read`: parts of the last state,
+    "velocities" and "scalars", from which every run goes on; `starts`: a state a run; default: the scene's start. (An
+    integrator that remembers the step before, velocity_verlet or bdf2, begins there as after a reset.) `read`: parts of the last state,
     "positions", "velocities" and "scalars". A loop that breaks ends the runs in progress."""
     host = server or default_server()
     request = batch_pb2.RunBatchRequest(
         source=source_of(scene, resolution_mm), preset=preset, seconds=seconds, frames_per_second=fps,
         threads=threads or 0, read=_parts(read),
     )  # fmt: skip
-    states = repeat(start.state if start is not None else None) if starts is None else starts
-    values = zip(parameters, states)
-    for begin in count(0, BLOCK):
-        block = list(islice(values, BLOCK))
+    if isinstance(parameters, Mapping):
+        raise InvalidArgument("parameters: give a list of sets, one a run: [{...}, {...}]")
+    values, begin = _with_starts(parameters, start, starts), 0
+    while True:
+        block, size = [], 0
+        del request.runs[:]
+        for each, state in values:
+            index = begin + len(block)
+            try:
+                request.runs.add(parameters=parameters_of(each), start=None if state is None else _arrays_of(state))
+            except InvalidArgument as error:
+                raise InvalidArgument(f"runs[{index}]: {error.message}") from None
+            block.append(each)
+            size += request.runs[-1].ByteSize()
+            if len(block) == BLOCK or size > BLOCK_BYTES:
+                break
         if not block:
             return
-        del request.runs[:]
-        for each, state in block:
-            request.runs.add(parameters=parameters_of(each), start=None if state is None else _arrays_of(state))
-        yield from _run(host, request, begin, [each for each, _ in block])
+        yield from _run(host, request, begin, block)
+        begin += len(block)
+
+
+def _with_starts(
+    parameters: Iterable[Mapping[str, Any]], start: Union[Frame, State, None], starts: Optional[Iterable[State]]
+) -> Iterator[tuple[Mapping[str, Any], Optional[State]]]:
+    """Yields each run's parameters with its start. InvalidArgument if there are fewer starts than runs."""
+    if start is not None and starts is not None:
+        raise InvalidArgument("start: give it or starts, not both")
+    states = iter(starts) if starts is not None else repeat(start.state if isinstance(start, Frame) else start)
+    for index, each in enumerate(parameters):
+        try:
+            yield each, next(states)
+        except StopIteration:
+            raise InvalidArgument(f"starts: there is none for runs[{index}]; give one a run") from None
 
 
 def _parts(read: Sequence[str]) -> tuple[int, ...]:
+    if isinstance(read, str):
+        raise InvalidArgument(f'read: give names in a tuple: ("{read}",)')
     if "bodies" in read:
         raise InvalidArgument('read: "bodies" come with frames of a session; name "positions"')
     return parts_of(tuple(read))
@@ -91,10 +122,12 @@ def _arrays_of(state: State) -> state_pb2.StateArrays:
     """Returns the state as the server takes it."""
     if state.positions is None or state.velocities is None or state.scalars is None or state.scalar_rates is None:
         raise InvalidArgument('start: the state lacks a part: read ("positions", "velocities", "scalars")')
+    numbers = (np.asarray(each, "<f8").tobytes() for each in
+               (state.positions, state.velocities, state.scalars, state.scalar_rates))  # fmt: skip
+    positions, velocities, scalars, rates = numbers
     return state_pb2.StateArrays(
-        tick=state.tick, time=state.time, phase=state.phase, positions=state.positions.tobytes(),
-        velocities=state.velocities.tobytes(), scalars=state.scalars.tobytes(),
-        scalar_rates=state.scalar_rates.tobytes(),
+        tick=state.tick, time=state.time, phase=state.phase, positions=positions, velocities=velocities,
+        scalars=scalars, scalar_rates=rates,
     )  # fmt: skip
 
 
@@ -102,11 +135,16 @@ def _run(
     host: Server, request: batch_pb2.RunBatchRequest, begin: int, block: Sequence[Mapping[str, Any]]
 ) -> Iterator[Run]:
     header = batch_pb2.BatchHeader()
-    for message in host.connection.stream(Call("StudyService.RunBatch", request)):
-        if message.HasField("header"):
-            header = message.header
-        else:
-            yield _run_of(message.result, header, begin, block, request.read)
+    try:
+        for message in host.connection.stream(Call("StudyService.RunBatch", request)):
+            if message.HasField("header"):
+                header = message.header
+            else:
+                yield _run_of(message.result, header, begin, block, request.read)
+    except Error as error:  # names a run by its place in this request
+        error.message = re.sub(r"^runs\[(\d+)\]", lambda m: f"runs[{begin + int(m[1])}]", error.message)
+        error.args = (error.message, *error.args[1:])
+        raise
 
 
 def _run_of(
@@ -117,7 +155,7 @@ def _run_of(
     parts: Sequence[int],
 ) -> Run:
     times = np.array(result.times)
-    table = np.array(result.measures).reshape(len(times), -1) if header.measures else np.empty((len(times), 0))
+    table = np.array(result.measures).reshape(len(times), len(header.measures))
     measures = {name: table[:, column] for column, name in enumerate(header.measures)}
     state = _state_of(result.state, header.layout, parts) if parts else None
     return Run(begin + result.run, block[result.run], times, measures, result.state_hash, result.problem, state,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any, Mapping, Optional
 
@@ -13,6 +14,11 @@ from .spaces import Box
 LITRE, KILOPASCAL = 1e-3, 1e3
 DIVERGED = -10.0
 """Reward of an action after which the simulation diverges, and of letting a patient suffocate."""
+
+
+def actions_of(seconds: float, interval: float) -> int:
+    """Number of actions, held for `interval` each, in an episode of `seconds`."""
+    return max(1, math.ceil(seconds / interval - 1e-6))
 
 
 @dataclass(frozen=True)

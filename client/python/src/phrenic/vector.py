@@ -1,5 +1,6 @@
 """Many patients side by side: vector environments after the interface of Gymnasium 1, whose steps are one call of the
-server (runs.py). Each patient has the states of the single environment with its seed, bit for bit.
+server (runs.py). Each patient has the states of the single environment with its seed, bit for bit (but with the
+integrators velocity_verlet and bdf2, which remember the step before).
 
 >>> patients = VentilateCopdVector(2, resolution_mm=12, seconds=0.2)
 >>> observations, infos = patients.reset(seed=[1, 2])
@@ -22,7 +23,7 @@ from .operations import Scene
 from .runs import Run, batch
 from .session import Session
 from .spaces import NEXT_STEP, Box, VectorEnv
-from .tasks import DIVERGED, FOLLOW_VOLUME, KEEP_BREATHING, VENTILATE_COPD, Episode, Task
+from .tasks import DIVERGED, FOLLOW_VOLUME, KEEP_BREATHING, VENTILATE_COPD, Episode, Task, actions_of
 
 if TYPE_CHECKING:
     from .server import Server
@@ -73,7 +74,8 @@ class BreathingVector(VectorEnv):
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Begins an episode of every patient. `seed`: one a patient, or that of the first, from which the others count
         up. `options`: live parameters of all patients."""
-        seeds = [seed + i for i in range(self.num_envs)] if isinstance(seed, int) else list(seed or [])
+        one = isinstance(seed, (int, np.integer))
+        seeds = [int(seed) + i for i in range(self.num_envs)] if one else list(seed or ())
         if seeds and len(seeds) != self.num_envs:
             raise InvalidArgument(f"seed: {len(seeds)} seeds for {self.num_envs} patients")
         for i, each in enumerate(seeds):
@@ -84,6 +86,7 @@ class BreathingVector(VectorEnv):
         self._episodes = [self._begin(random) for random in self._randoms]
         self._states: list[State] = [self._rest[0]] * self.num_envs
         self._done[:] = False
+        self._actions = np.zeros(self.num_envs, int)
         self._observations = np.stack([each.observe(self._rest[1], 0) for each in self._episodes])
         hashes = [self._rest[2]] * self.num_envs
         return self._observations.copy(), self._infos([self._rest[1]["lung volume"]] * self.num_envs, hashes)
@@ -99,6 +102,7 @@ class BreathingVector(VectorEnv):
         volumes, hashes = [self._rest[1]["lung volume"]] * self.num_envs, [self._rest[2]] * self.num_envs
         for i in np.flatnonzero(self._done):
             self._episodes[i], self._states[i] = self._begin(self._randoms[i]), self._rest[0]
+            self._actions[i] = 0
             self._observations[i] = self._episodes[i].observe(self._rest[1], 0)
         going = [int(i) for i in np.flatnonzero(~self._done)]
         self._done[:] = False
@@ -107,8 +111,8 @@ class BreathingVector(VectorEnv):
             rewards[i], terminated[i] = self._judge(i, run, numbers[i])
             volumes[i] = float(run.measures["lung volume"][-1]) if len(run.times) else volumes[i]
             hashes[i] = run.state_hash
-        ended = np.array([state.time >= self._seconds - 0.25 * self._interval for state in self._states])
-        truncated = ended & ~terminated
+        self._actions[going] += 1
+        truncated = (self._actions >= actions_of(self._seconds, self._interval)) & ~terminated
         self._done = terminated | truncated
         return self._observations.copy(), rewards, terminated, truncated, self._infos(volumes, hashes)
 
