@@ -183,7 +183,7 @@ void PrintRegistration(const fit::RegisteredLungs& registered) { RegistrationTab
 void PrintRegistrationCsv(const fit::RegisteredLungs& registered) { RegistrationTable(registered).PrintCsv(std::cout); }
 
 void PrintDoubts(const fit::RegisteredLungs& registered) {
-  for (const std::string& doubt : registered.doubts) std::cerr << "phrenic: warning: " << doubt << ": check the axes\n";
+  for (const std::string& doubt : registered.doubts) std::cerr << "phrenic: warning: " << doubt << "\n";
 }
 
 json FitJson(const fit::MotionFit& fit, const fit::FitOptions& options) {

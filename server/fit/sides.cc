@@ -148,7 +148,7 @@ absl::Status CheckAxes(const Points& points, const Points& right, const Points& 
   };
   for (const AxisSign& sign : signs) {
     if (!(sign.errors > -kCertain)) return absl::InvalidArgumentError(sign.wrong);
-    if (sign.errors < kCertain) sides.doubts.emplace_back(sign.doubt);
+    if (sign.errors < kCertain) sides.doubts.push_back(absl::StrCat(sign.doubt, ": check the axes"));
   }
   return absl::OkStatus();
 }

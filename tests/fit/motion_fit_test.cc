@@ -76,6 +76,16 @@ TEST_F(SyntheticFit, RefusesWhatIsNoBreath) {
   EXPECT_EQ(cancelled.status().code(), absl::StatusCode::kCancelled);
 }
 
+TEST_F(SyntheticFit, DoubtsABreathInWhichTheLungsShrink) {
+  Landmarks person = SyntheticPerson();
+  person.exhale += person.motion;
+  person.motion = -person.motion;
+  const auto fit = FitMotion(GeneratedLungs(), person, {});
+  ASSERT_TRUE(fit.ok()) << fit.status();
+  EXPECT_THAT(fit->registered.doubts, testing::Contains(HasSubstr("exchanged")));
+  EXPECT_THAT(Fitted().registered.doubts, testing::Not(testing::Contains(HasSubstr("exchanged"))));
+}
+
 // The motion is the model's own here, so the fit is exact, but for its ridge of 0.1 %.
 TEST_F(SyntheticFit, FindsTheAmplitudesThatMadeTheMotion) {
   Landmarks person = SyntheticPerson(400);
