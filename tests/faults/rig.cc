@@ -11,6 +11,7 @@ namespace phrenic::faults {
 namespace {
 
 constexpr double kMostRecovery = 30;  // [s]
+constexpr double kLookEvery = 0.2;    // at whether the server has ended [s]
 
 double Now() { return absl::ToDoubleSeconds(absl::Now() - absl::UnixEpoch()); }
 
@@ -52,18 +53,33 @@ bool Rig::StepsAgain() {
   return false;
 }
 
+// The server may still be ending when the fault returns: its sockets close before the process has ended.
+absl::StatusOr<bool> Rig::FindSession() {
+  const double until = Now() + kMostRecovery;
+  bool restarted = false;
+  do {
+    if (!restarted && !server_->running()) {
+      if (absl::Status status = server_->Start(); !status.ok()) return status;
+      restarted = true;
+      driver_.Connect(server_->address());
+    }
+    const double asked = Now();
+    if (driver_.FindTick(kLookEvery).has_value()) return true;
+    if (Now() - asked < kLookEvery) return false;  // the server answers that it has no such session
+  } while (Now() < until);
+  return false;
+}
+
 void Rig::Recover(Tally& tally) {
   ++tally.tried;
-  if (!server_->running()) {
-    if (absl::Status status = server_->Start(); !status.ok()) {
-      std::fprintf(stderr, "the server does not restart: %s\n", status.ToString().c_str());
-      ++tally.lost;
-      return;
-    }
-  }
   driver_.Connect(server_->address());
-  const bool found = driver_.FindTick(kMostRecovery).has_value();
-  const bool steps = found && StepsAgain();
+  const absl::StatusOr<bool> found = FindSession();
+  if (!found.ok()) {
+    std::fprintf(stderr, "the server does not restart: %s\n", found.status().ToString().c_str());
+    ++tally.lost;
+    return;
+  }
+  const bool steps = *found && StepsAgain();
   tally.recovered.push_back(Now() - disturbed_);
   if (!steps) {
     std::fprintf(stderr, "the session is lost: %s\n", driver_.error().c_str());

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/statusor.h"
 #include "tests/faults/driver.h"
 #include "tests/support/server_process.h"
 
@@ -42,6 +43,9 @@ class Rig {
   double Wait(double max) { return std::uniform_real_distribution<double>(0, max)(random_); }
 
  private:
+  // Restarts the server, once, if it has ended or ends now. Returns whether the session responds in time; the error of
+  // a server that does not restart.
+  absl::StatusOr<bool> FindSession();
   bool StepsAgain();
 
   std::mt19937 random_{3};
