@@ -37,7 +37,7 @@ void UpdateSchedule::Restore(const v1::SavedMoment& moment) {
 
 double StableStepFor(const Model& model, const v1::Parameters& parameters, const v1::Parameters& known,
                      double known_step) {
-  if (parameters.elasticity() == known.elasticity() && parameters.integrator() == known.integrator()) return known_step;
+  if (HaveSameStableStep(parameters, known)) return known_step;
   return LargestStableStep(model, parameters).seconds();
 }
 

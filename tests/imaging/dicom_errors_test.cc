@@ -38,7 +38,7 @@ std::string Edited(const Edit& edit) {
   return SmallSegmentation::BytesOf(file);
 }
 
-// Returns the error's text; empty, and a failure, if there is none.
+// Returns the error's text. Fails the test, and returns an empty text, if the volume is accepted.
 std::string ErrorOf(const std::string& bytes) {
   const absl::StatusOr<LabelVolume> volume = ParseLabels("a.dcm", bytes);
   EXPECT_TRUE(absl::IsInvalidArgument(volume.status())) << volume.status();

@@ -75,7 +75,7 @@ class BatchTest(SessionTest):
     def test_wrong_arguments_are_refused_by_name(self):
         state = self.session("cube-springs").step(1).state
         for words, arguments in (
-            ("starts: there is none for runs\\[2\\]", {"starts": [state, state]}),
+            ("starts: runs\\[2\\] has none", {"starts": [state, state]}),
             ("start: give it or starts", {"start": state, "starts": [state] * 3}),
             ("read: give names in a tuple", {"read": "positions"}),
         ):

@@ -68,10 +68,13 @@ double RoundDown(double value) {
 
 }  // namespace
 
+bool HaveSameStableStep(const v1::Parameters& a, const v1::Parameters& b) {
+  return a.elasticity() == b.elasticity() && a.integrator() == b.integrator();
+}
+
 v1::StableStep StableStepOf(const Model& model, const v1::Parameters& parameters) {
-  const bool known = parameters.elasticity() == model.parameters.elasticity() &&
-                     parameters.integrator() == model.parameters.integrator();
-  return known ? model.report.stable_step() : LargestStableStep(model, parameters);
+  return HaveSameStableStep(parameters, model.parameters) ? model.report.stable_step()
+                                                          : LargestStableStep(model, parameters);
 }
 
 double ChosenStep(const v1::StableStep& stable) {

@@ -13,8 +13,11 @@ inline constexpr double kLongestStep = 1.0 / 60;
 // fastest mode (FindFastestMode), and the reason. Thread-safe.
 v1::StableStep LargestStableStep(const Model& model, const v1::Parameters& parameters);
 
-// Returns the same, without computing it where it is known: if all that it depends on, elasticity and integrator, is as
-// in the scene. So a session, a study and a batch with the same parameters take the same steps. Thread-safe.
+// True if the largest stable steps of two sets of parameters are the same: elasticity and integrator are.
+bool HaveSameStableStep(const v1::Parameters& a, const v1::Parameters& b);
+
+// Returns the largest stable step, without computing it if it is that of the scene's own parameters. So a session, a
+// study and a batch with the same parameters take the same steps. Thread-safe.
 v1::StableStep StableStepOf(const Model& model, const v1::Parameters& parameters);
 
 // Returns the step of a run for which none is set: 0.9 of the largest stable one, rounded down to two digits, at most

@@ -29,7 +29,7 @@ class ResultQueue {
     }
   }
 
-  // Waits a moment for a result; none if there is none yet, or the last one was taken.
+  // Returns the next result; waits for it at most kLookEvery, and returns nothing if none came.
   std::optional<v1::BatchResult> Take() {
     const absl::MutexLock lock(&mutex_);
     mutex_.AwaitWithTimeout(absl::Condition(this, &ResultQueue::HasNews), kLookEvery);

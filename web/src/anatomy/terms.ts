@@ -7,7 +7,7 @@ export interface Term {
   /** Part of the body; empty for the whole body. */
   region: string;
   name: string;
-  /** Name of the Terminologia Anatomica (second edition, 2019); empty if there is none. */
+  /** Name of the Terminologia Anatomica (second edition, 2019); empty if it has no name for the structure. */
   latin: string;
   /** Other words to find it by. */
   also: string;

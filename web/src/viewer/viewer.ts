@@ -254,7 +254,7 @@ export class Viewer {
     );
   }
 
-  /** Calls `rested` with the vertex under the resting pointer and its place [CSS pixels]; undefined if there is none. */
+  /** Calls `rested` with the vertex under the resting pointer and its place [CSS pixels]; undefined if it rests on no body. */
   enableHover(rested: (vertex: VertexRef | undefined, x: number, y: number) => void): void {
     const find = (event: PointerEvent) => {
       const visible = this.views.filter(({ group, isFaded }) => group.visible && !isFaded);

@@ -107,7 +107,7 @@ def _with_starts(
         try:
             yield each, next(states)
         except StopIteration:
-            raise InvalidArgument(f"starts: there is none for runs[{index}]; give one a run") from None
+            raise InvalidArgument(f"starts: runs[{index}] has none: give a state for each run") from None
 
 
 def _parts(read: Sequence[str]) -> tuple[int, ...]:

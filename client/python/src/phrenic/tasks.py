@@ -1,4 +1,4 @@
-"""What an environment asks of whoever breathes for the patient: actions, observations, rewards."""
+"""Tasks of the environments: a patient, actions, observations, rewards."""
 
 from __future__ import annotations
 
