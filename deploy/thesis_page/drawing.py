@@ -105,22 +105,22 @@ def bars_3d(rows, columns, values, title, z_label):
     top = max(max(row) for row in values)
 
     def at(c, r, z):
-        return 70 + 62 * c + 34 * r, 215 - 26 * r - 130 * z / top
+        return 70 + 118 * c + 40 * r, 255 - 30 * r - 150 * z / top
 
-    body = text(10, 16, z_label, "start")
+    body, labels = text(10, 16, z_label, "start"), ""
     for r in reversed(range(len(rows))):
         for c in range(len(columns)):
             z, colour = values[r][c], COLOURS[r % 5]
-            front = [at(c, r, 0), at(c + 0.6, r, 0), at(c + 0.6, r, z), at(c, r, z)]
-            side = [at(c + 0.6, r, 0), at(c + 0.6, r + 0.5, 0), at(c + 0.6, r + 0.5, z), at(c + 0.6, r, z)]
-            lid = [at(c, r, z), at(c + 0.6, r, z), at(c + 0.6, r + 0.5, z), at(c, r + 0.5, z)]
+            front = [at(c, r, 0), at(c + 0.22, r, 0), at(c + 0.22, r, z), at(c, r, z)]
+            side = [at(c + 0.22, r, 0), at(c + 0.22, r + 0.5, 0), at(c + 0.22, r + 0.5, z), at(c + 0.22, r, z)]
+            lid = [at(c, r, z), at(c + 0.22, r, z), at(c + 0.22, r + 0.5, z), at(c, r + 0.5, z)]
             for face, opacity in ((lid, 0.6), (side, 0.8), (front, 1)):
                 points = " ".join(f"{x:.1f},{y:.1f}" for x, y in face)
                 body += f'<polygon points="{points}" fill="{colour}" fill-opacity="{opacity}" stroke="#fff"/>'
-            body += text(*at(c + 0.3, r, z + top * 0.03), number(round(z, 2)), size=9)
-        body += text(*at(len(columns) - 0.1, r, 0), rows[r], "start", 10)
-    body += "".join(text(at(c + 0.3, 0, 0)[0], 232, name, size=10) for c, name in enumerate(columns))
-    return svg(body, title, 520, 245)
+            labels += text(*at(c + 0.2, r, z + top * 0.1), number(round(z, 2) if z < 100 else round(z)), size=9)
+        labels += text(*at(len(columns) - 0.6, r, 0), rows[r], "start", 10)
+    labels += "".join(text(at(c + 0.11, 0, 0)[0], 272, name, size=10) for c, name in enumerate(columns))
+    return svg(body + labels, title, 640, 285)
 
 
 def project(vertices, view):

@@ -220,7 +220,7 @@ def timed(figure, plot, what, ours, thesis, verdict):
 
 def ratio_words(ours, thesis):
     ratios = [mean(thesis[name]) / mean(ours[name]) for name in ours]
-    return f"ours takes 1/{digits(min(ratios))} to 1/{digits(max(ratios))} of the thesis' time (another machine, 2008)"
+    return f"Ours takes 1/{digits(min(ratios))} to 1/{digits(max(ratios))} of the thesis' time (another machine, 2008)"
 
 
 def percent(with_part, without):
@@ -317,16 +317,17 @@ CASES = ["All forces, links", "All forces, no links", "Rib kinematics only", "Di
 def summary(cost, others):
     ours = rates(cost, others)
     rows = []
-    for size in SIZES:
-        cells = [size, data.VERTICES["perfect"][size]]
-        for theirs, own in zip(data.RATES[size], ours[size]):
+    for i, case in enumerate(CASES):
+        cells = [case]
+        for theirs, own in ((data.RATES[size][i], ours[size][i]) for size in SIZES):
             cells += [theirs, digits(own) if own else "-", digits(own / theirs) if own else "-"]
         rows.append(cells)
-    head = ["Perfect model", "Vertices"] + [f"{case}: {who}" for case in CASES for who in ("thesis", "ours", "ratio")]
+    head = ["Perfect model"] + [f"{size}: {who}" for size in SIZES for who in ("thesis", "ours", "ratio")]
     ratios = [own / theirs for size in SIZES for own, theirs in zip(ours[size], data.RATES[size]) if own]
     words = f"{digits(min(ratios))} to {digits(max(ratios))} times the iterations per second" if ratios else "not measured"
     return section("5.24", "iterations per second", table(head, rows),
-                   f"{words} of the thesis. The patient's rows (6.37 to 19.69) need its CT.")
+                   f"{words} of the thesis, whose meshes have {', '.join(str(data.VERTICES['perfect'][s]) for s in SIZES)} "
+                   f"vertices. The patient's rows (6.37 to 19.69) need its CT.")
 
 
 def in_three_dimensions(cost, others):
@@ -361,8 +362,17 @@ def links_cost(cost):
              for size, (count, theirs) in data.PATIENT_LINKS.items()]
     head = ["Model", "Vertices", "Links (thesis)", "Cost of links", "in single trials", "thesis", "ratio"]
     return section("5.27", "cost of the rigid links", table(head, rows),
-                   "Agrees that links cost a few per cent of a step of the thorax. The thesis' rates of the patient here "
-                   "differ from those of its figure 5.24; the patient's meshes need its CT.")
+                   f"{links_words([row['links_cost_percent'] for row in cost['sizes']])} The thesis' rates of the patient "
+                   "here differ from those of its figure 5.24; the patient's meshes need its CT.")
+
+
+def links_words(ours):
+    theirs = [percent for _, percent in data.LINKS.values()]
+    words = (f"Links cost {digits(min(ours))} to {digits(max(ours))} % of a step here, {min(theirs)} to {max(theirs)} % in the "
+             "thesis")
+    if max(ours) <= 1.5 * max(theirs):
+        return f"Agrees: {words}."
+    return f"{words}: more of a step whose springs have become cheaper, and little in both."
 
 
 def page(folder):
