@@ -15,6 +15,7 @@ class FakeClock final : public Clock {
     return now_;
   }
   void Await(absl::Mutex& mutex, const absl::Condition& condition, absl::Time deadline) const override {
+    if (deadline == absl::InfiniteFuture()) return mutex.Await(condition);
     while (!condition.Eval() && Now() < deadline) mutex.AwaitWithTimeout(condition, absl::Milliseconds(1));
   }
   // Moves the time forward; Await returns within a few milliseconds of real time.

@@ -32,6 +32,7 @@ constexpr Rule kRules[] = {
     {"SessionService.PlaySession", kNone, kController, kChanges},
     {"SessionService.PauseSession", kNone, kController, kChanges},
     {"SessionService.StepSession", kNone, kController, kChanges},
+    {"SessionService.Advance", kNone, kController, kChanges},
     {"SessionService.ResetSession", kNone, kController, kChanges},
     {"SessionService.UpdateParameters", kNone, kController, kChanges},
     {"SessionService.PullSession", kNone, kController, kChanges},

@@ -51,6 +51,29 @@ std::optional<Number> OptionalOf(bool has, Number value) {
   return has ? std::optional(value) : std::nullopt;
 }
 
+// Takes the steps of a request. Ends early when `cancelled` returns true.
+template <class Request, class Cancelled>
+auto TakeSteps(session::Session& session, const Request& request, Cancelled cancelled) {
+  return session.Step(request.ticks(), OptionalOf(request.has_expected_tick(), request.expected_tick()), cancelled,
+                      request.control_token());
+}
+
+// Changes the parameters of the request, takes its steps and fills the response.
+absl::Status ChangeAndStep(ServedCall& call, session::Session& session, const v1::AdvanceRequest& request,
+                           v1::AdvanceResponse* response) {
+  if (request.has_parameters()) {
+    auto updated = session.Update(request.parameters(), std::nullopt, std::nullopt, request.control_token());
+    if (!updated.ok()) return updated.status();
+    for (std::string& warning : updated->warnings) response->add_warnings(std::move(warning));
+  }
+  auto stepped = TakeSteps(session, request, [&] { return call.context().IsCancelled(); });
+  if (!stepped.ok()) return stepped.status();
+  if (request.has_parameters()) *response->mutable_session() = std::move(stepped->session);
+  response->set_state_hash(std::move(stepped->state_hash));
+  *response->mutable_measures() = std::move(stepped->measures);
+  return FillState(session, stepped->frame->state, request.read(), response);
+}
+
 // Returns the simulated time reached by the session that this one follows; null if it follows none.
 absl::StatusOr<std::shared_ptr<const session::ReachedTime>> LeaderOf(const AccessGuard& guard,
                                                                      const access::Caller& caller,
@@ -77,6 +100,7 @@ void SessionService::AddTo(CallTable& calls) {
   calls.Add(Lane::kSession, *this, &SessionService::PlaySession);
   calls.Add(Lane::kSession, *this, &SessionService::PauseSession);
   calls.Add(Lane::kSession, *this, &SessionService::StepSession);
+  calls.AddConversation(Lane::kSession, *this, &SessionService::Advance);
   calls.Add(Lane::kSession, *this, &SessionService::GetState);
   calls.Add(Lane::kSession, *this, &SessionService::ResetSession);
   calls.Add(Lane::kSession, *this, &SessionService::UpdateParameters);
@@ -190,10 +214,8 @@ grpc::Status SessionService::StepSession(ServedCall& call, const v1::StepSession
   return Change(call.context(), request, response, [&](session::Session& session) {
     if (absl::Status good = CheckRead(request); !good.ok()) return good;
     if (absl::Status reserved = call.Reserve(BytesOf(session, request.read())); !reserved.ok()) return reserved;
-    const auto tick = OptionalOf(request.has_expected_tick(), request.expected_tick());
     const bool idempotent = !request.request_id().empty();  // a repeat expects the result
-    auto stepped = session.Step(
-        request.ticks(), tick, [&] { return !idempotent && call.context().IsCancelled(); }, request.control_token());
+    auto stepped = TakeSteps(session, request, [&] { return !idempotent && call.context().IsCancelled(); });
     if (!stepped.ok()) return stepped.status();
     if (!request.read().empty()) {
       absl::Status read = FillState(session, stepped->frame->state, request.read(), response);
@@ -203,6 +225,19 @@ grpc::Status SessionService::StepSession(ServedCall& call, const v1::StepSession
     *response->mutable_measures() = std::move(stepped->measures);
     return FillSession(std::move(stepped->session), response);
   });
+}
+
+grpc::Status SessionService::Advance(ServedCall& call, const v1::AdvanceRequest& request,
+                                     v1::AdvanceResponse* response) {
+  const auto admitted = AdmitToSession(guard_, table_, call.context(), request);
+  if (!admitted.ok()) return ToGrpc(admitted.status());
+  session::Session& session = *admitted->session;
+  if (absl::Status good = stream::CheckParts(request.read()); !good.ok()) return ToGrpc(good);
+  if (absl::Status reserved = call.Reserve(BytesOf(session, request.read())); !reserved.ok()) return ToGrpc(reserved);
+  const absl::Status advanced = ChangeAndStep(call, session, request, response);
+  if (!MayHaveChanged(advanced)) return ToGrpc(advanced);
+  const absl::Status acknowledged = session.Acknowledge();
+  return ToGrpc(acknowledged.ok() ? advanced : acknowledged);
 }
 
 grpc::Status SessionService::GetState(ServedCall& call, const v1::GetStateRequest& request,

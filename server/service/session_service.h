@@ -54,6 +54,8 @@ class SessionService final {
   // Returns after the last step. Ends early with CANCELLED if the caller disconnects, unless the request has a
   // request_id: a repeat then gets the result.
   grpc::Status StepSession(ServedCall& call, const v1::StepSessionRequest& request, v1::StepSessionResponse* response);
+  // Answers one request of the stream; the next is read after it. A change is acknowledged as StepSession's.
+  grpc::Status Advance(ServedCall& call, const v1::AdvanceRequest& request, v1::AdvanceResponse* response);
   // Waits at most for the current step, and leaves the stepping thread no work. RESOURCE_EXHAUSTED, here and above,
   // before the parts of a state are copied that the caller leaves unread (CallLimits::replies).
   grpc::Status GetState(ServedCall& call, const v1::GetStateRequest& request, v1::GetStateResponse* response);

@@ -65,20 +65,22 @@ inline std::string& User() {
   return user;
 }
 
+// In a new process: sends its output to the files, and ends it with the test at the latest.
+inline void SetUpProcess(const std::string& out, const std::string& err) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  setenv("XDG_CONFIG_HOME", Scratch("config").c_str(), 1);  // independent of the tester's settings
+  setenv("XDG_STATE_HOME", Scratch(User()).c_str(), 1);
+  dup2(open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
+  dup2(open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
+}
+
 // Starts a program of the build with standard output and error in files. The program ends with the test at the latest.
 // Returns its process id.
 inline pid_t Start(const std::string& program, const std::vector<std::string>& arguments, const std::string& out,
                    const std::string& err) {
-  const std::string state = Scratch(User());
   const pid_t pid = fork();
   if (pid != 0) return pid;
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  setenv("XDG_CONFIG_HOME", Scratch("config").c_str(), 1);  // independent of the tester's settings
-  setenv("XDG_STATE_HOME", state.c_str(), 1);
-  const int to_out = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  const int to_err = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  dup2(to_out, STDOUT_FILENO);
-  dup2(to_err, STDERR_FILENO);
+  SetUpProcess(out, err);
   const std::string path = std::string(PHRENIC_BINARY_DIR) + "/" + program;
   std::vector<char*> argv = {const_cast<char*>(path.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));

@@ -23,7 +23,7 @@ const slowly = (viewer: ViewerPage) => viewer.page.selectOption("#speed", "0.25"
 async function picturesOf(viewer: ViewerPage, name: string): Promise<void> {
   for (const [width, height] of sizes) {
     await viewer.page.setViewportSize({ width, height });
-    await viewer.page.waitForTimeout(1500);
+    await viewer.page.waitForTimeout(500);
     const widest = () =>
       Math.max(
         ...[...document.querySelectorAll("#student *, #header *")].map((each) => each.getBoundingClientRect().right),

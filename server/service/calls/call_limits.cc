@@ -11,6 +11,7 @@ constexpr int kOfUnknown = 16;      // callers without account or link share thi
 constexpr int kWaitingOfCalls = 4;  // fraction of a caller's calls that may wait for a thread of one lane
 constexpr int kUnread = 24;         // requests that are being read; of one caller:
 constexpr int kUnreadOfCaller = 4;
+constexpr int kConversations = 64, kConversationsOfCaller = 16;
 constexpr int kRequests = 128, kRequestsOfCaller = 32;  // places of large requests
 constexpr int kPlacesOfLargest = 4;
 constexpr std::size_t kLargeRequest = 64 << 10;       // [bytes]
@@ -47,7 +48,7 @@ CallLimits::CallLimits(int max_calls, std::chrono::milliseconds request_time, st
       unknown_({"calls in flight without an account", kSetting, std::max(1, max_calls / kOfUnknown) * kCallersInFull,
                 std::max(1, max_calls / kOfUnknown)}),
       unread_({"requests that are being read", kSetting, kUnread, kUnreadOfCaller, max_calls}),
-      conversations_({"conversations", kSetting, kUnread, kUnreadOfCaller}),
+      conversations_({"conversations", kSetting, kConversations, kConversationsOfCaller}),
       requests_({"large requests that are not answered", "--max-message-mb", kRequests, kRequestsOfCaller}),
       replies_({"large replies that are not read", kSetting, kReplies, kRepliesOfCaller}),
       lanes_{FairShare(LaneLimits(Lane::kQuick, max_calls)), FairShare(LaneLimits(Lane::kSession, max_calls)),

@@ -66,6 +66,20 @@ class CallTable final : public grpc::CallbackGenericService {
       return (service.*handler)(&call.context(), &request, &writer);
     });
   }
+  // Adds a method with a stream of requests, each of which the handler answers once. The next request is read when the
+  // client's flow control has accepted the answer; the first error ends the stream.
+  template <class Service, class Request, class Response>
+  void AddConversation(Lane lane, Service& service, Large<Service, Request, Response> handler) {
+    const access::Rule* rule = access::RuleOf(Request::descriptor()->full_name());
+    const auto answer = [&service, handler](ServedCall& call, const Request& request) -> std::optional<grpc::Status> {
+      Response response;
+      grpc::Status status = (service.*handler)(call, request, &response);
+      if (!status.ok()) return status;
+      if (!call.Write(Serialize(response))) return grpc::Status::CANCELLED;
+      return std::nullopt;
+    };
+    Add("phrenic.v1", {rule, lane, Parsed<Request>(answer), /*conversation=*/true});
+  }
   // Adds a method whose handler has the call itself: it parses the request, and may go on without a thread.
   // FrameService::WatchFrames is such a method, since its stream goes on without a thread.
   template <class Request>
@@ -92,12 +106,16 @@ class CallTable final : public grpc::CallbackGenericService {
   // Frees the bytes of the request before the handler runs, so that a long call does not keep them.
   template <class Request, class Handler>
   void AddParsed(Lane lane, Handler handler) {
-    AddRaw<Request>(lane, [handler](ServedCall& call) -> std::optional<grpc::Status> {
+    AddRaw<Request>(lane, Parsed<Request>(std::move(handler)));
+  }
+  template <class Request, class Handler>
+  static Method::Handler Parsed(Handler handler) {
+    return [handler](ServedCall& call) -> std::optional<grpc::Status> {
       Request request;
       const absl::Status parsed = Parse(call.request(), request);
       call.request().Clear();
-      return parsed.ok() ? handler(call, request) : ToGrpc(parsed);
-    });
+      return parsed.ok() ? std::optional<grpc::Status>(handler(call, request)) : ToGrpc(parsed);
+    };
   }
 
   AccessGuard& guard_;

@@ -6,6 +6,11 @@
 #include "server/service/calls/status.h"
 
 namespace phrenic::service {
+namespace {
+
+constexpr std::chrono::milliseconds kConversationPause(60'000);  // between two requests
+
+}  // namespace
 
 void IncomingCall::Begin(const access::Rule* rule) {
   self_ = shared_from_this();
@@ -33,6 +38,16 @@ void IncomingCall::Read(FairShare& share, std::chrono::milliseconds time) {
     self->reading_ = std::move(hold);
     self->StartReading(time);
   });
+}
+
+void IncomingCall::ReadNext() {
+  answered_ = true;
+  Read(limits_.conversations(), kConversationPause);
+}
+
+void IncomingCall::OnNoRequest() {
+  FinishOnce(answered_ ? grpc::Status::OK
+                       : grpc::Status(grpc::StatusCode::INVALID_ARGUMENT, "the call has no request"));
 }
 
 void IncomingCall::StartReading(std::chrono::milliseconds time) {

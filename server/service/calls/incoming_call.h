@@ -55,9 +55,6 @@ class IncomingCall : public grpc::ServerGenericBidiReactor, public std::enable_s
   // Called when request() is complete. Must not block. Runs on the thread that completed the read, and once for each
   // request of a conversation.
   virtual void OnRequest() = 0;
-  // Called instead if the client has ended a call without a further request. INVALID_ARGUMENT unless a derived class
-  // allows it.
-  virtual void OnNoRequest() { FinishOnce({grpc::StatusCode::INVALID_ARGUMENT, "the call has no request"}); }
 
   // Returns the request that was read last. Not to be used while a read is in progress.
   grpc::ByteBuffer& request() { return request_; }
@@ -65,9 +62,9 @@ class IncomingCall : public grpc::ServerGenericBidiReactor, public std::enable_s
   // account or a link on a server with accounts.
   const std::string& caller() const { return caller_; }
   CallLimits& limits() { return limits_; }
-  // Reads the next request, within `time`, after waiting for a place in `share`. The time begins with the place, which
-  // is given back when the read ends. DEADLINE_EXCEEDED ends the call. Requires: no read is in progress.
-  void Read(FairShare& share, std::chrono::milliseconds time) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Reads the next request of a conversation, for which the client has a minute. The call ends with OK if the client has
+  // no further one. Requires: the call's last request was answered.
+  void ReadNext();
   // Waits for a place in `share`. Finishes the call if too many wait, or if its client goes away. `granted` runs at
   // most once, at once or on a thread that gives a place back, and keeps the call alive. RESOURCE_EXHAUSTED or
   // CANCELLED ends the call. One wait at a time.
@@ -78,6 +75,11 @@ class IncomingCall : public grpc::ServerGenericBidiReactor, public std::enable_s
   void FinishOnce(const grpc::ByteBuffer& message, const grpc::Status& status);
 
  private:
+  // Reads a request, within `time`, after waiting for a place in `share`. The time begins with the place, which
+  // is given back when the read ends. DEADLINE_EXCEEDED ends the call. Requires: no read is in progress.
+  void Read(FairShare& share, std::chrono::milliseconds time) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Ends a call whose client has ended it without a further request: INVALID_ARGUMENT unless one was answered.
+  void OnNoRequest();
   // Takes the places of CallLimits::requests that the request needs. RESOURCE_EXHAUSTED if there are too few.
   absl::Status TakePlaces();
   // Starts the read and the alarm that ends the call after `time`.
@@ -94,6 +96,7 @@ class IncomingCall : public grpc::ServerGenericBidiReactor, public std::enable_s
   FairShare::Hold in_flight_, reading_;     // of the whole call; of the read in progress
   std::vector<FairShare::Hold> places_;     // of a large request, until OnDone or the next read
   std::optional<grpc::Alarm> alarm_;        // of the read
+  bool answered_ = false;                   // ReadNext was called: a conversation had a request
   std::atomic<bool> read_pending_ = false;  // neither complete nor expired
   std::atomic<bool> finished_ = false;      // FinishOnce was called
   std::atomic<bool> cancelled_ = false;     // can be read when the call, and its context with it, may be done

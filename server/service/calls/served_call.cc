@@ -8,8 +8,7 @@
 namespace phrenic::service {
 namespace {
 
-constexpr absl::Duration kStall = absl::Minutes(1);              // for which a client may read nothing
-constexpr std::chrono::milliseconds kConversationPause(60'000);  // between two requests of a conversation
+constexpr absl::Duration kStall = absl::Minutes(1);  // for which a client may read nothing
 
 constexpr std::size_t kLargeReply = 64 << 10;   // [bytes]
 constexpr std::size_t kBytesOfPlace = 4 << 20;  // of a large reply, for each of its places
@@ -30,14 +29,11 @@ void ServedCall::OnRequest() {
   });
 }
 
-void ServedCall::OnNoRequest() { answered_ ? FinishOnce(grpc::Status::OK) : IncomingCall::OnNoRequest(); }
-
 void ServedCall::Run() {
   if (context().IsCancelled()) return FinishOnce(grpc::Status::CANCELLED);
   const std::optional<grpc::Status> status = method_->handler(*this);
-  answered_ = true;
   if (status.has_value()) return FinishOnce(*status);
-  if (method_->conversation) Read(limits().conversations(), kConversationPause);
+  if (method_->conversation) ReadNext();
 }
 
 bool ServedCall::Write(const grpc::ByteBuffer& message) {

@@ -85,8 +85,6 @@ class ServedCall final : public IncomingCall {
       : IncomingCall(guard, limits, context), method_(method) {}
   // Waits for the lane and posts Run; no thread is blocked meanwhile.
   void OnRequest() override;
-  // Ends a conversation that had a request with OK.
-  void OnNoRequest() override;
   // Runs the handler; CANCELLED without running it if the client has gone. Reads the next request of a conversation.
   void Run();
   // Returns null before Continue.
@@ -95,7 +93,6 @@ class ServedCall final : public IncomingCall {
   const Method* const method_;          // null only in a call that ends in Begin
   grpc::ByteBuffer outgoing_;           // of the write in progress; gRPC reads it
   std::vector<FairShare::Hold> reply_;  // of a large reply, until OnDone
-  bool answered_ = false;               // a conversation had a request
 
   // Guards what the handler's thread shares with gRPC's. Not the mutex of IncomingCall.
   absl::Mutex mutex_;

@@ -17,17 +17,18 @@ constexpr std::chrono::seconds kFanOutTimeout(2);
 }  // namespace
 
 ForwardedCall::ForwardedCall(SessionRouter& router, AccessGuard& guard, CallLimits& limits,
-                             grpc::GenericCallbackServerContext& context)
+                             const Method* method, grpc::GenericCallbackServerContext& context)
     : IncomingCall(guard, limits, context),
       router_(router),
+      conversation_(method != nullptr && method->conversation),
       method_(context.method()),
       peer_(PeerOf(context).empty() ? "unknown" : PeerOf(context)),
       metadata_(SessionRouter::ForwardedMetadata(context)) {}
 
 ForwardedCall* ForwardedCall::Make(SessionRouter& router, AccessGuard& guard, CallLimits& limits,
-                                   const access::Rule* rule, grpc::GenericCallbackServerContext& context) {
-  const std::shared_ptr<ForwardedCall> call(new ForwardedCall(router, guard, limits, context));
-  call->Begin(rule);
+                                   const Method* method, grpc::GenericCallbackServerContext& context) {
+  const std::shared_ptr<ForwardedCall> call(new ForwardedCall(router, guard, limits, method, context));
+  call->Begin(method == nullptr ? nullptr : method->rule);
   return call.get();
 }
 
@@ -41,6 +42,8 @@ void ForwardedCall::FindRoute() {
   auto route = router_.Find(method_, metadata_, request());
   if (!route.ok()) return FinishOnce(ToGrpc(route.status()));
   route_ = *std::move(route);
+  target_ = 0;
+  responded_ = false;
   if (route_.fan_out) return FanOut();
   CallTarget();
 }
@@ -101,6 +104,7 @@ void ForwardedCall::OnUpstreamDone(const grpc::Status& status) {
                        absl::StrCat("the server at ", target.address, ", which has the session, does not answer (",
                                     status.error_message(), "); try again in a moment")});
   }
+  if (status.ok() && conversation_) return ReadNext();
   if (!missing && !unreachable) return FinishOnce(status);
   if (target_ + 1 == route_.targets.size()) return FinishOnce(first_status_);
   ++target_;

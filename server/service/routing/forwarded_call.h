@@ -11,13 +11,15 @@
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
 #include "server/service/calls/incoming_call.h"
+#include "server/service/calls/served_call.h"
 #include "server/service/routing/session_router.h"
 #include "server/service/routing/upstream_call.h"
 
 namespace phrenic::service {
 
-// Reads one request message, since Phrenic has no client-streaming methods, and writes any number of responses. Reads
-// the next response from upstream after the previous one is written, so that a slow client exerts back-pressure.
+// Reads a request and writes any number of responses. Reads the next response from upstream after the previous one is
+// written, so that a slow client exerts back-pressure. Each request of a conversation is a call of its own to the target:
+// when that has ended with OK, the next request is read.
 //
 // The request is read first; then FindRoute runs on a thread of the limits, which is free again when it returns. The
 // handlers of the upstream calls run on gRPC's threads, one at a time unless the call fans out. Members without a guard
@@ -27,9 +29,9 @@ namespace phrenic::service {
 // the target. gRPC's threads call it; it deletes itself after OnDone.
 class ForwardedCall final : public IncomingCall {
  public:
-  // `rule` as in IncomingCall::Begin. The call owns itself, and may be done before Make returns: the pointer is for
+  // `method` as in ServedCall::Make. The call owns itself, and may be done before Make returns: the pointer is for
   // gRPC alone.
-  static ForwardedCall* Make(SessionRouter& router, AccessGuard& guard, CallLimits& limits, const access::Rule* rule,
+  static ForwardedCall* Make(SessionRouter& router, AccessGuard& guard, CallLimits& limits, const Method* method,
                              grpc::GenericCallbackServerContext& context);
 
   // Reactions, on gRPC's threads. OnWriteDone reads on, and cancels the upstream call if the client is gone. OnCancel
@@ -39,7 +41,7 @@ class ForwardedCall final : public IncomingCall {
   void OnDone() override;
 
  private:
-  ForwardedCall(SessionRouter& router, AccessGuard& guard, CallLimits& limits,
+  ForwardedCall(SessionRouter& router, AccessGuard& guard, CallLimits& limits, const Method* method,
                 grpc::GenericCallbackServerContext& context);
   // Waits for a place in Lane::kQuick.
   void OnRequest() override;
@@ -70,10 +72,11 @@ class ForwardedCall final : public IncomingCall {
   void OnFanOutDone(std::size_t index, const grpc::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
 
   SessionRouter& router_;
+  const bool conversation_;
   const std::string method_, peer_;         // peer_ is the IP address; "unknown" where the transport has no address
   const SessionRouter::Metadata metadata_;  // of the client, as far as they are forwarded
   grpc::ByteBuffer outgoing_;               // of the write in progress
-  SessionRouter::Route route_;              // constant after FindRoute
+  SessionRouter::Route route_;              // of the last request
   std::size_t target_ = 0;                  // index of the route's current target
   bool responded_ = false;                  // a response was forwarded to the client
   grpc::Status first_status_;               // of the first target; returned if no target finds the resource

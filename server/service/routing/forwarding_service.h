@@ -25,7 +25,7 @@ class ForwardingService final : public grpc::CallbackGenericService {
   // gRPC calls it for each call, on its own threads, when it has the headers. The call deletes itself after OnDone. A
   // method that the table lacks ends with UNIMPLEMENTED.
   grpc::ServerGenericBidiReactor* CreateReactor(grpc::GenericCallbackServerContext* context) override {
-    return ForwardedCall::Make(router_, guard_, limits_, calls_.RuleOf(context->method()), *context);
+    return ForwardedCall::Make(router_, guard_, limits_, calls_.Find(context->method()), *context);
   }
 
  private:

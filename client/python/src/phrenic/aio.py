@@ -18,6 +18,7 @@ import grpc
 import grpc.aio
 
 from . import jobs
+from .advance import AsyncSteps
 from .call import Call, Operation, T, delay_before_repeat, one
 from .connection import Channel, Target, Tls, target_of
 from .errors import FailedPrecondition, error_of
@@ -143,6 +144,10 @@ class Session(SessionOperations):
     async def step(self, ticks: int = 1, read: Sequence[str] = EVERYTHING, timeout: Optional[float] = None) -> Frame:
         """As phrenic.Session.step."""
         return await self._do(self._step(ticks, read, timeout))
+
+    def advance(self, read: Sequence[str] = EVERYTHING) -> AsyncSteps:
+        """As phrenic.Session.advance: `async with s.advance() as steps: await steps.step()`."""
+        return AsyncSteps(self, read)
 
     async def play(self, seconds: float, fps: float = 60, read: Sequence[str] = ("bodies",)) -> AsyncIterator[Frame]:
         """As phrenic.Session.play."""

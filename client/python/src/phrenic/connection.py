@@ -126,6 +126,13 @@ class Channel:
         metadata = [*self.target.metadata, *call.metadata]
         return getattr(self._stubs[service], method)(call.request, timeout=timeout, metadata=metadata)
 
+    def converse(self, call: Call, *requests: Any) -> Any:
+        """Starts a call whose requests are a stream, routed and without a deadline; returns its answers. `requests`: their
+        iterator, for the blocking client."""
+        service, _, method = call.method.partition(".")
+        metadata = [*self.target.metadata, *call.metadata]
+        return getattr(self._stubs[service], method)(*requests, metadata=metadata)
+
 
 class Connection(Channel):
     """A blocking connection. Thread-safe. Does not connect before the first call."""

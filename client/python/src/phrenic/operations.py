@@ -192,6 +192,17 @@ class SessionOperations:
         """Number of steps to the simulated time [s], rounded; at least 1."""
         return max(1, round((time - self.time) / self.time_step))
 
+    def _frame_ticks(self, seconds: float, fps: float) -> list[int]:
+        """Steps to each frame from the one before, as play() takes them at an unchanged time step."""
+        count, step = max(1, round(seconds * fps)), self.time_step
+        reached, ticks = 0, []
+        for i in range(1, count + 1):
+            tick = round(i / (fps * step))
+            if tick > reached:
+                ticks.append(tick - reached)
+                reached = tick
+        return ticks or [1]
+
     def _frame_times(self, seconds: float, fps: float) -> Iterator[float]:
         """Times of frames from now on that a step can reach [s]."""
         start = self.time

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Sequence, Un
 import grpc
 
 from . import jobs
+from .advance import Steps, frames_ahead
 from .call import T, Operation
 from .connection import Connection
 from .errors import error_of
 from .frame import Frame
-from .operations import EVERYTHING, Scene, SessionOperations, create, source_of
+from .operations import EVERYTHING, Scene, SessionOperations, create, parts_of, source_of
 from .v1 import session_pb2, state_pb2
 
 if TYPE_CHECKING:
@@ -87,14 +88,28 @@ class Session(SessionOperations):
         () returns measures and the hash alone, and NaN as the phase. OutOfRange if the session diverges."""
         return self._do(self._step(ticks, read, timeout))
 
-    def play(self, seconds: float, fps: float = 60, read: Sequence[str] = ("bodies",)) -> Iterator[Frame]:
+    def advance(self, read: Sequence[str] = EVERYTHING) -> Steps:
+        """Returns a stream of steps, a context manager: an answer for each step in order, steps sent ahead, parameters
+        changed by the step that they begin with. Do not use other methods that step while answers are pending."""
+        self._do(self._describe(parts_of(tuple(read))))
+        return Steps(self, self._connection, read)
+
+    def play(
+        self, seconds: float, fps: float = 60, read: Sequence[str] = ("bodies",), ahead: int = 0
+    ) -> Iterator[Frame]:
         """Steps and yields `fps` frames a simulated second, as fast as they are taken: none is ever dropped, and the
-        same call gives the same frames. run() and watch() are for real time.
+        same call gives the same frames. run() and watch() are for real time. `ahead`: frames that the server may compute
+        before the loop asks for them, with the same bits, while the loop works with the last one; a change made in the
+        loop then takes effect after them, and a loop that is left leaves the session ahead.
 
         >>> with Session("cube-springs") as s:
         ...     [round(frame.time, 2) for frame in s.play(seconds=0.2, fps=10)]
         [0.1, 0.2]
         """
+        if ahead != 0:
+            self._do(self._describe(parts_of(tuple(read))))
+            yield from frames_ahead(self, self._connection, self._frame_ticks(seconds, fps), read, ahead)
+            return
         for time in self._frame_times(seconds, fps):
             yield self.step(self.ticks_until(time), read)
 
