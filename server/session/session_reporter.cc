@@ -4,6 +4,7 @@
 
 #include "server/mechanics/constraint_residual.h"
 #include "server/mechanics/pulls.h"
+#include "server/mechanics/state_warnings.h"
 #include "server/session/saving.h"
 #include "server/stream/encoder.h"
 
@@ -18,14 +19,12 @@ void WriteResiduals(const Run& run, v1::Session& status) {
     status.set_solver_residual(run.effort().residual());
     status.set_solver_iterations(run.effort().iterations());
   }
-  status.clear_warnings();
-  if (run.model().constraints.empty()) return;
   const ConstraintResidual residual = LargestResidual(run.model(), run.state());
+  const auto warnings = StateWarnings(run.model(), run.parameters(), run.state(), residual);
+  status.mutable_warnings()->Assign(warnings.begin(), warnings.end());
+  if (run.model().constraints.empty()) return;
   status.set_constraint_residual(residual.metres);
   status.set_residual_constraint(std::string(residual.constraint));
-  if (std::string warning = ResidualWarning(run.model(), run.parameters(), residual); !warning.empty()) {
-    status.add_warnings(std::move(warning));
-  }
 }
 
 }  // namespace

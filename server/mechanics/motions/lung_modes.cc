@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/mesh/topology.h"
 
 namespace phrenic {
 
@@ -16,6 +18,8 @@ struct LungModes::Lung {
 };
 
 namespace {
+
+constexpr double kLeast = 0.25, kMost = 4;  // volume of a lung over that at rest
 
 // Returns +1 for a left lung and -1 for a right one.
 absl::StatusOr<double> OutwardsOf(const v1::Body& body, std::string_view path) {
@@ -71,8 +75,13 @@ void LungModes::Add(int body, const std::vector<Lung>& lungs, ModelBuilder& buil
   Model& model = builder.model;
   const BodyModel& added = model.bodies[body];
   const Eigen::Index n = added.mesh.vertices.cols();
-  Moved& moved =
-      moved_.emplace_back(Moved{added.first_vertex, added.mesh.vertices, Responses::Zero(3 * n, kModeParameters)});
+  Moved& moved = moved_.emplace_back(
+      Moved{added.first_vertex, added.mesh.vertices, Responses::Zero(3 * n, kModeParameters), {}, 0, added.name});
+  const auto is_this = [body](const Lung& lung) { return lung.body == body; };
+  if (std::any_of(lungs.begin(), lungs.end(), is_this)) {
+    moved.faces = added.mesh.triangles;
+    moved.rest_volume = SignedVolume(added.mesh.vertices, moved.faces);
+  }
   for (Eigen::Index i = 0; i < n && !builder.stop.Stopped(); ++i) {
     const Eigen::Vector3d at = moved.rest.col(i);
     const Lung& lung = LungAt(at, body, lungs);
@@ -126,6 +135,18 @@ void LungModes::Drive(const EvalContext& at, State& state) const {
     state.x.middleCols(moved.first, n) = moved.rest + signal * state.v.middleCols(moved.first, n);
     motion *= rate;
   }
+}
+
+std::string LungModes::Warning(const State& state) const {
+  for (const Moved& moved : moved_) {
+    if (moved.faces.cols() == 0) continue;
+    const double volume = SignedVolume(state.x.middleCols(moved.first, moved.rest.cols()), moved.faces);
+    if (volume >= kLeast * moved.rest_volume && volume <= kMost * moved.rest_volume) continue;
+    return absl::StrFormat(
+        "%s has %.3g l, %.3g l at rest: no lung moves so far; lower breath_force or the amplitudes lung_*", moved.body,
+        1e3 * volume, 1e3 * moved.rest_volume);
+  }
+  return "";
 }
 
 }  // namespace phrenic

@@ -22,6 +22,10 @@ class LungModes final : public Motion {
                                                       std::string_view path, ModelBuilder& builder);
 
   void Drive(const EvalContext& at, State& state) const override;
+  // Warns of a lung with less than a quarter or more than four times its volume at rest: from the residual volume to
+  // the total capacity, lungs of people have 0.5 to 2.5 times that at the end of a quiet expiration. What is turned
+  // inside out has a negative volume.
+  std::string Warning(const State& state) const override;
 
  private:
   using Responses = Eigen::Matrix<double, Eigen::Dynamic, kModeParameters>;  // row 3 i + axis of vertex i [1]
@@ -31,6 +35,9 @@ class LungModes final : public Motion {
     int first;  // simulated vertex
     Points rest;
     Responses responses;
+    Triangles faces;         // of a lung; empty for what is inside
+    double rest_volume = 0;  // [m^3]
+    std::string body;
   };
   struct Lung;
 

@@ -4,9 +4,11 @@
 #include <limits>
 #include <string>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/mechanics/constraint_residual.h"
 #include "server/mechanics/stability/largest_step.h"
+#include "server/mechanics/state_warnings.h"
 #include "server/mechanics/step/loose_parts.h"
 
 namespace phrenic {
@@ -77,6 +79,9 @@ std::string Remedy(const Model& model, const v1::Parameters& parameters, const S
     return absl::StrFormat(
         "%s cannot hold, it is off by %.3g m: take out links that contradict each other or move less",
         std::string(residual.constraint), residual.metres);
+  }
+  if (const auto warnings = MotionWarnings(model, before); !warnings.empty()) {
+    return absl::StrCat(warnings.front(), ", then reset");
   }
   const double stable = LargestStableStep(model, parameters).seconds();
   if (parameters.time_step() > stable) {

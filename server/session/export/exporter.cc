@@ -9,6 +9,7 @@
 
 #include "server/mechanics/constraint_residual.h"
 #include "server/mechanics/skinning/body_points.h"
+#include "server/mechanics/state_warnings.h"
 #include "server/record/recorder.h"
 #include "server/schema/thread_cpu.h"
 #include "server/session/run.h"
@@ -52,13 +53,14 @@ class MotionExport {
     summary.set_state_hash(HashText(run_.state()));
     summary.set_end_time(run_.state().time);
     summary.set_end_tick(run_.state().tick);
-    if (model_.constraints.empty()) return;
     const ConstraintResidual residual = WorstResidual();
-    summary.set_constraint_residual(residual.metres);
-    summary.set_residual_constraint(std::string(residual.constraint));
+    summary.mutable_warnings()->Assign(motion_warnings_.begin(), motion_warnings_.end());
     if (std::string warning = ResidualWarning(model_, run_.parameters(), residual); !warning.empty()) {
       summary.add_warnings(std::move(warning));
     }
+    if (model_.constraints.empty()) return;
+    summary.set_constraint_residual(residual.metres);
+    summary.set_residual_constraint(std::string(residual.constraint));
   }
 
  private:
@@ -98,6 +100,7 @@ class MotionExport {
     PlaceBodies();
     ++frames_;
     worst_ = WorstResidual();
+    if (motion_warnings_.empty()) motion_warnings_ = MotionWarnings(model_, run_.state());
     std::vector<double> numbers;
     if (plan_.format.numbers_only) numbers = NumbersAt(model_, run_.parameters(), run_.state());
     return recorder_.AddFrame({run_.state().time, positions_, numbers});
@@ -160,7 +163,8 @@ class MotionExport {
   const ExportProgress& progress_;
   const double begin_;  // simulated time at which stepping began [s]
   Points positions_;
-  ConstraintResidual worst_;
+  ConstraintResidual worst_;                  // of the frames
+  std::vector<std::string> motion_warnings_;  // of the first frame that has some
   Wall::time_point last_report_ = Wall::now();
   std::int64_t frames_ = 0, steps_ = 0;
   double step_wall_ = 0, step_cpu_ = 0;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "server/mechanics/measure.h"
+#include "server/mechanics/state_warnings.h"
 #include "server/mesh/topology.h"
 #include "tests/compile_text.h"
 
@@ -78,6 +79,18 @@ TEST(LungModes, HaveTheVelocityOfTheirPositions) {
   const State before = RunTo(*model, 0.999, 0.001), at = RunTo(*model, 1, 0.001), after = RunTo(*model, 1.001, 0.001);
   EXPECT_LT(((after.x - before.x) / 0.002 - at.v).cwiseAbs().maxCoeff(), 1e-6 * at.v.cwiseAbs().maxCoeff() + 1e-7);
   EXPECT_GT(at.v.norm(), 0.01);
+}
+
+TEST(LungModes, WarnOfAVolumeThatNoLungHas) {
+  const auto warnings = [](const std::string& parameters) {
+    const auto model = CompileText(Lungs(parameters));
+    return MotionWarnings(*model, RunTo(*model, 2, 0.01));
+  };
+  EXPECT_THAT(warnings("lung_piston_right: 0.02 lung_piston_left: 0.02 lung_pump: 0.01"), testing::IsEmpty());
+  EXPECT_THAT(warnings("lung_piston_left: 0.04 breath_force: 20"),
+              testing::ElementsAre(testing::AllOf(HasSubstr("l has "), HasSubstr("lower breath_force"))));
+  EXPECT_THAT(warnings("lung_piston_left: -0.04 breath_force: 20"),
+              testing::ElementsAre(testing::AllOf(HasSubstr("l has -"), HasSubstr("lung_*"))));
 }
 
 TEST(LungModes, CarryWhatLiesInside) {
