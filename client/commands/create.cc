@@ -3,6 +3,7 @@
 #include "client/commands/commands.h"
 #include "client/files/tokens.h"
 #include "client/print/show_session.h"
+#include "client/terminal/open_page.h"
 #include "client/terminal/progress.h"
 #include "phrenic/v1/session.grpc.pb.h"
 
@@ -15,6 +16,7 @@ struct NewSessionOptions {
   bool play = false;
   bool mine = false;  // true: only the owner controls it
   std::string name;   // the owner's
+  bool web = false;   // open its page
 };
 
 struct CreateOptions {
@@ -43,15 +45,21 @@ grpc::Status StartPlaying(const Context& context, v1::SessionService::Stub& stub
 
 v1::ControlPolicy PolicyOf(bool mine) { return mine ? v1::CONTROL_POLICY_OWNER : v1::CONTROL_POLICY_EVERYBODY; }
 
-// Stores the owner's token of a session that was just created, starts the session if `play` is true, and shows it.
+// Stores the owner's token of a session that was just created, starts and shows it as the options say.
 template <typename Response>
-int ShowNewSession(const Context& context, v1::SessionService::Stub& stub, grpc::Status status, bool play,
-                   Response& response) {
+int ShowNewSession(const Context& context, v1::SessionService::Stub& stub, grpc::Status status,
+                   const NewSessionOptions& options, Response& response) {
   if (status.ok() && !response.control_token().empty()) {
     KeepToken(context, response.session().id(), response.control_token());
   }
-  if (status.ok() && play) status = StartPlaying(context, stub, *response.mutable_session());
-  return ShowSession(context, status, response, status.ok() ? ViewerLink(context, response.session().id()) : "");
+  if (status.ok() && options.play) status = StartPlaying(context, stub, *response.mutable_session());
+  const std::string link = status.ok() ? ViewerLink(context, response.session().id()) : "";
+  const int code = ShowSession(context, status, response, link);
+  if (code != kOk || !options.web) return code;
+  if (link.empty())
+    return Fail(absl::FailedPreconditionError("--web: the server serves no viewer; give phrenicd --web"));
+  const absl::Status opened = OpenPage(link);
+  return opened.ok() ? kOk : Fail(opened);
 }
 
 int CreateSession(const Context& context, const CreateOptions& options) {
@@ -74,7 +82,7 @@ int CreateSession(const Context& context, const CreateOptions& options) {
   const grpc::Status status = WithProgress("compiling " + options.scene.scene, [&] {
     return Call(context, *stub, &v1::SessionService::Stub::CreateSession, request, &response);
   });
-  return ShowNewSession(context, *stub, status, options.session.play, response);
+  return ShowNewSession(context, *stub, status, options.session, response);
 }
 
 int ForkSession(const Context& context, const ForkOptions& options) {
@@ -86,13 +94,14 @@ int ForkSession(const Context& context, const ForkOptions& options) {
   const auto stub = v1::SessionService::NewStub(Connect(context));
   v1::ForkSessionResponse response;
   const grpc::Status status = Call(context, *stub, &v1::SessionService::Stub::ForkSession, request, &response);
-  return ShowNewSession(context, *stub, status, options.session.play, response);
+  return ShowNewSession(context, *stub, status, options.session, response);
 }
 
 void AddNewSession(CLI::App& command, NewSessionOptions& options) {
   command.add_option("--id", options.id, "name of the new session: 1 to 64 of a-z, 0-9 and -");
   command.add_flag("--play", options.play, "start the session at once");
   command.add_flag("--mine", options.mine, "only you may change the session, until you hand control over");
+  command.add_flag("--web", options.web, "open the session in a browser");
   command.add_option("--name", options.name, "your name as others see it");
 }
 

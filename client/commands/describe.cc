@@ -11,11 +11,13 @@
 #include "client/commands/commands.h"
 #include "client/connection/connection.h"
 #include "client/connection/errors.h"
+#include "client/connection/local_run.h"
 #include "client/print/output.h"
 #include "client/print/print_session.h"
 #include "client/print/table.h"
 #include "client/terminal/progress.h"
 #include "phrenic/v1/session.grpc.pb.h"
+#include "server/service/server.h"
 
 namespace phrenic::client {
 namespace {
@@ -109,15 +111,19 @@ void PrintReport(const v1::DescribeSceneResponse& response) {
   PrintParameters(response);
 }
 
-int Describe(const Context& context, const SceneOptions& options) {
-  const absl::StatusOr<v1::SceneSource> source = ReadScene(options);
+struct DescribeOptions {
+  SceneOptions scene;
+  std::string data_dir;
+};
+
+int DescribeOn(const Context& context, const DescribeOptions& options, v1::SceneService::Stub& stub) {
+  const absl::StatusOr<v1::SceneSource> source = ReadScene(options.scene);
   if (!source.ok()) return Fail(source.status());
   v1::DescribeSceneRequest request;
   *request.mutable_source() = *source;
-  const auto stub = v1::SceneService::NewStub(Connect(context));
   v1::DescribeSceneResponse response;
-  const grpc::Status status = WithProgress("compiling " + options.scene, [&] {
-    return Call(context, *stub, &v1::SceneService::Stub::DescribeScene, request, &response);
+  const grpc::Status status = WithProgress("compiling " + options.scene.scene, [&] {
+    return Call(context, stub, &v1::SceneService::Stub::DescribeScene, request, &response);
   });
   if (!status.ok()) return Fail(context, status);
   if (context.json()) {
@@ -128,11 +134,19 @@ int Describe(const Context& context, const SceneOptions& options) {
   return kOk;
 }
 
+int Describe(const Context& context, const DescribeOptions& options) {
+  if (context.server_given) return DescribeOn(context, options, *v1::SceneService::NewStub(Connect(context)));
+  auto server = service::Server::Start(LocalOptions(options.data_dir));
+  if (!server.ok()) return Fail(server.status());
+  return DescribeOn(context, options, *v1::SceneService::NewStub((*server)->InProcessChannel()));
+}
+
 }  // namespace
 
 CommandFunction SetUpDescribe(CLI::App& command) {
-  const auto options = std::make_shared<SceneOptions>();
-  AddScene(command, *options);
+  const auto options = std::make_shared<DescribeOptions>();
+  AddScene(command, options->scene);
+  AddDataFolder(command, options->data_dir);
   return Bind(&Describe, options);
 }
 

@@ -169,6 +169,13 @@ TEST(Run, ExportedDeplHasARowPerVertexAndFrame) {
   EXPECT_EQ(numbers.size(), 8U * 5 * 3);
 }
 
+TEST(Run, ASceneIsDescribedWithoutAServer) {
+  const Outcome outcome = Phrenic({"describe", "cube-tensegrity"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("Largest stable step"));
+  EXPECT_EQ(Phrenic({"describe", "cube-tensegrity", "--server", "127.0.0.1:1"}).code, 3) << "it asks the named server";
+}
+
 TEST(Run, ASceneFileRuns) {
   const Outcome run = Phrenic({"run", WriteScratch("own.textproto", Scene()), "--seconds", "0.1", "-o", "json"});
   ASSERT_EQ(run.code, 0) << run.err;

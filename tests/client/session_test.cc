@@ -52,6 +52,26 @@ TEST_F(Sessions, DescribePrintsWhatRunsAndTheLargestStableStep) {
   EXPECT_GT(json["report"]["stable_step"]["seconds"].get<double>(), 0);
 }
 
+TEST_F(Sessions, OpenInABrowserByTheirLink) {
+  const std::string opened = Scratch("opened"), browser = WriteScratch("browser", "#!/bin/sh\necho \"$1\" > " + opened);
+  std::filesystem::permissions(browser, std::filesystem::perms::owner_all);
+  setenv("BROWSER", browser.c_str(), 1);
+  const auto created = Json({"create", "cube-springs", "--id", "seen", "--web"});
+  unsetenv("BROWSER");
+  const std::string link = created["viewer"];
+  EXPECT_THAT(link, HasSubstr("?session=seen"));
+  for (int i = 0; i < 500 && ReadAll(opened).empty(); ++i) usleep(20'000);
+  EXPECT_EQ(ReadAll(opened), link + "\n");
+  setenv("BROWSER", "no-such-browser", 1);
+  const std::string path = getenv("PATH");
+  setenv("PATH", Scratch("").c_str(), 1);
+  const Outcome outcome = Ask({"create", "cube-springs", "--id", "unseen", "--web"});
+  setenv("PATH", path.c_str(), 1);
+  unsetenv("BROWSER");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("xdg-open"), HasSubstr("?session=unseen")));
+}
+
 TEST_F(Sessions, ASessionLivesFromCreateToDelete) {
   EXPECT_EQ(Json({"create", "cube-springs", "--id", "one", "--set", "breath_force=2"})["session"]["id"], "one");
   EXPECT_EQ(Json({"sessions"})["sessions"].size(), 1U);
