@@ -1,4 +1,4 @@
-#include "tests/service/raw_socket.h"
+#include "tests/support/raw_socket.h"
 // After Boost, which needs <utility> first.
 #include <grpcpp/generic/generic_stub.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
 // Calls of one connection, one account or callers without one never occupy the server.
 #include "tests/service/process_fixture.h"
-#include "tests/service/raw_http2.h"
+#include "tests/support/raw_http2.h"
 // After Boost, which needs <utility> first.
 #include <gmock/gmock.h>
 #include <google/protobuf/descriptor.h>

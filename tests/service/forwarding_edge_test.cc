@@ -1,6 +1,6 @@
 // Requests to the gRPC port, of a server alone and of one in a cluster, that would be illegal if they were passed on;
 // and a cluster over TLS.
-#include "tests/service/raw_http2.h"
+#include "tests/support/raw_http2.h"
 // After Boost, which needs <utility> first.
 #include <grpcpp/generic/async_generic_service.h>
 #include <grpcpp/server_builder.h>

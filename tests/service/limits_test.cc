@@ -1,6 +1,6 @@
 // Callers above a limit are refused with the name of its setting, and do not affect other callers.
 #include "tests/service/process_fixture.h"
-#include "tests/service/raw_socket.h"
+#include "tests/support/raw_socket.h"
 // After Boost, which needs <utility> first.
 #include <gmock/gmock.h>
 #include <sys/resource.h>

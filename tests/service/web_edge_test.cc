@@ -1,6 +1,6 @@
 // What the web gateway refuses at its edge: headers that gRPC forbids, hosts that nobody named, ambiguous framing, and
 // bodies of callers that are not known.
-#include "tests/service/raw_socket.h"
+#include "tests/support/raw_socket.h"
 // After Boost, which needs <utility> first.
 #include <filesystem>
 #include <map>

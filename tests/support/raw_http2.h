@@ -1,8 +1,8 @@
 // A raw HTTP/2 client for calls that no gRPC library makes.
-#ifndef PHRENIC_TESTS_SERVICE_RAW_HTTP2_H_
-#define PHRENIC_TESTS_SERVICE_RAW_HTTP2_H_
+#ifndef PHRENIC_TESTS_SUPPORT_RAW_HTTP2_H_
+#define PHRENIC_TESTS_SUPPORT_RAW_HTTP2_H_
 
-#include "tests/service/raw_socket.h"
+#include "tests/support/raw_socket.h"
 // After Boost, which needs <utility> first.
 #include <string>
 
@@ -56,4 +56,4 @@ class RawHttp2 {
 
 }  // namespace phrenic::service
 
-#endif  // PHRENIC_TESTS_SERVICE_RAW_HTTP2_H_
+#endif  // PHRENIC_TESTS_SUPPORT_RAW_HTTP2_H_

@@ -1,6 +1,6 @@
 // A raw HTTP client for valid, slow and malicious requests.
-#ifndef PHRENIC_TESTS_SERVICE_RAW_SOCKET_H_
-#define PHRENIC_TESTS_SERVICE_RAW_SOCKET_H_
+#ifndef PHRENIC_TESTS_SUPPORT_RAW_SOCKET_H_
+#define PHRENIC_TESTS_SUPPORT_RAW_SOCKET_H_
 
 #include <utility>
 // Boost 1.74's Asio needs <utility> before it with C++20.
@@ -121,4 +121,4 @@ inline std::string WebMessage(const std::string& message) {
 
 }  // namespace phrenic::service
 
-#endif  // PHRENIC_TESTS_SERVICE_RAW_SOCKET_H_
+#endif  // PHRENIC_TESTS_SUPPORT_RAW_SOCKET_H_
