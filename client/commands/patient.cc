@@ -31,6 +31,7 @@ struct PatientOptions {
   double edge_length = 4;  // [mm]
   int vertices = 20000;
   double tendon_share = 0.17;
+  bool anyway = false;  // also if the volume is not usable
   bool serve = false;
   std::string web = "127.0.0.1:8080";
 };
@@ -72,6 +73,18 @@ void PrintDiaphragm(const v1::DerivedDiaphragm& diaphragm) {
   }
 }
 
+const char* WordsOf(v1::ReadinessVerdict verdict) {
+  if (verdict == v1::READINESS_VERDICT_READY) return "ready";
+  return verdict == v1::READINESS_VERDICT_NOT_USABLE ? "not usable" : "usable with care";
+}
+
+void PrintReadiness(const v1::Readiness& readiness) {
+  std::cout << "readiness: " << WordsOf(readiness.verdict()) << "\n";
+  for (const v1::ReadinessFinding& finding : readiness.findings()) {
+    std::cout << "  " << WordsOf(finding.verdict()) << ": " << finding.what() << "\n";
+  }
+}
+
 void PrintPatient(const v1::PatientReport& report) {
   Table surfaces({"surface", "vertices", "ml", "label ml"});
   for (const v1::PatientSurface& surface : report.surfaces()) {
@@ -87,6 +100,7 @@ void PrintPatient(const v1::PatientReport& report) {
   ribs.Print(std::cout);
   PrintDiaphragm(report.diaphragm());
   for (const std::string& fallback : report.fallbacks()) std::cout << "fall-back: " << fallback << "\n";
+  PrintReadiness(report.readiness());
 }
 
 // Replaces this process by a server that plays the patient. Returns only on failure.
@@ -103,11 +117,20 @@ int MakePatient(const Context& context, const PatientOptions& options) {
   if (absl::Status status = schema::CheckId("--name", options.name); !status.ok()) return Fail(status);
   const absl::StatusOr<imaging::Patient> patient = ReadAndMakePatient(options);
   if (!patient.ok()) return Fail(patient.status());
-  if (absl::Status status = WritePatient(options.out, *patient); !status.ok()) return Fail(status);
+  const v1::Readiness& readiness = patient->report.readiness();
+  const bool refused = readiness.verdict() == v1::READINESS_VERDICT_NOT_USABLE && !options.anyway;
+  if (absl::Status status = refused ? absl::OkStatus() : WritePatient(options.out, *patient); !status.ok()) {
+    return Fail(status);
+  }
   if (context.json()) {
     std::cout << Json(patient->report) << "\n";
   } else {
     PrintPatient(patient->report);
+  }
+  if (refused) {
+    return Fail(absl::FailedPreconditionError(
+        absl::StrCat(options.volume, " is not usable, and nothing was written: ", readiness.findings(0).what(),
+                     ". The report lists every finding; --anyway writes the patient nevertheless")));
   }
   if (options.serve) return ServePatient(options);
   std::cerr << "wrote " << SceneFile(options.out, options.name) << "; next:\n"
@@ -135,6 +158,7 @@ CommandFunction SetUpPatient(CLI::App& command) {
   command.add_option("--tendon-share", options->tendon_share, "fraction of the diaphragm's area that is tendon")
       ->check(NumberIn(0.05, 0.5))
       ->capture_default_str();
+  command.add_flag("--anyway", options->anyway, "write the patient also if the volume is not usable");
   CLI::Option* serve = command.add_flag("--serve", options->serve, "then start phrenicd with the viewer");
   command.add_option("--web", options->web, "address of the viewer")->needs(serve)->capture_default_str();
   return Bind(&MakePatient, options);

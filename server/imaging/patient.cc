@@ -10,6 +10,7 @@
 #include "server/imaging/label_map.h"
 #include "server/imaging/label_surface.h"
 #include "server/imaging/patient_scene.h"
+#include "server/imaging/readiness/readiness.h"
 #include "server/imaging/rib_axis.h"
 #include "server/mesh/topology.h"
 #include "server/mesh/units.h"
@@ -109,6 +110,7 @@ absl::StatusOr<Patient> MakePatient(const LabelVolume& volume, const v1::LabelMa
   patient.report.set_moved_left_mm(-frame->centre.x());
   for (PatientBody& body : patient.bodies) body.mesh.vertices.row(0).array() -= kMillimetre * frame->centre.x();
   ReportRibs(*frame, patient);
+  *patient.report.mutable_readiness() = JudgeReadiness(volume, *parts, patient.bodies, patient.report);
   patient.scene = PatientScene(pattern, patient.bodies, *frame, options.name);
   for (std::string& message : fallbacks) patient.report.add_fallbacks(std::move(message));
   return patient;

@@ -1,0 +1,171 @@
+#include "server/imaging/readiness/readiness.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "server/imaging/patient_scene.h"
+#include "server/imaging/readiness/border.h"
+#include "server/mesh/self_crossings.h"
+
+namespace phrenic::imaging {
+namespace {
+
+using Findings = std::vector<v1::ReadinessFinding>;
+
+constexpr auto kCare = v1::READINESS_VERDICT_USABLE_WITH_CARE, kRefuse = v1::READINESS_VERDICT_NOT_USABLE;
+
+void Add(bool refuse, std::string what, Findings& findings) {
+  v1::ReadinessFinding& finding = findings.emplace_back();
+  finding.set_verdict(refuse ? kRefuse : kCare);
+  finding.set_what(std::move(what));
+}
+
+void FindCutLungs(const LabelVolume& volume, const std::vector<Part>& parts, Findings& findings) {
+  constexpr double kLeast = 2, kMost = 20;  // [cm^2]
+  for (const Part& part : parts) {
+    if (!part.Is(v1::STRUCTURE_LUNG)) continue;
+    const BorderCut cut = LargestCut(volume, part);
+    if (cut.area <= kLeast) continue;
+    Add(cut.area > kMost,
+        absl::StrFormat(
+            "%s is cut by the %s border of the volume over %.0f cm2: its volume and its base are not known; "
+            "use a scan from the apices of the lungs to L3",
+            part.name, cut.side, cut.area),
+        findings);
+  }
+}
+
+void FindCutRibs(const LabelVolume& volume, const std::vector<Part>& parts, Findings& findings) {
+  constexpr std::size_t kMost = 8;
+  std::vector<std::string> cut;
+  for (const Part& part : parts) {
+    if (part.Is(v1::STRUCTURE_RIB) && LargestCut(volume, part).area > 0) cut.push_back(part.name);
+  }
+  if (cut.empty()) return;
+  Add(cut.size() >= kMost,
+      absl::StrFormat("the border of the volume cuts %s: their motion is that of the part that is left",
+                      absl::StrJoin(cut, ", ")),
+      findings);
+}
+
+void FindMissingRibs(const std::vector<Part>& parts, Findings& findings) {
+  constexpr int kLast = 10;  // ribs 11 and 12 float
+  constexpr std::size_t kMost = 7;
+  std::vector<std::string> missing;
+  for (const v1::Side side : {v1::SIDE_RIGHT, v1::SIDE_LEFT}) {
+    for (int number = 1; number <= kLast; ++number) {
+      const bool there = std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
+        return part.Is(v1::STRUCTURE_RIB) && part.anatomy.side() == side && part.anatomy.number() == number;
+      });
+      if (!there) missing.push_back(absl::StrFormat("%d %s", number, side == v1::SIDE_RIGHT ? "right" : "left"));
+    }
+  }
+  if (missing.empty()) return;
+  Add(missing.size() >= kMost,
+      absl::StrFormat("ribs are missing (%s): the wall, the costal margin and the axes of the cage are guessed there",
+                      absl::StrJoin(missing, ", ")),
+      findings);
+}
+
+void FindMissingOrgans(const std::vector<Part>& parts, Findings& findings) {
+  const auto has = [&parts](v1::Organ organ) {
+    return std::any_of(parts.begin(), parts.end(), [organ](const Part& part) { return part.organ == organ; });
+  };
+  const auto is_sheet = [](const Part& part) { return part.Is(v1::STRUCTURE_DIAPHRAGM); };
+  if (std::any_of(parts.begin(), parts.end(), is_sheet)) return;
+  std::vector<std::string> missing;
+  if (!has(v1::ORGAN_HEART)) missing.emplace_back("heart");
+  if (!has(v1::ORGAN_LIVER)) missing.emplace_back("liver");
+  if (!has(v1::ORGAN_STOMACH) && !has(v1::ORGAN_SPLEEN)) missing.emplace_back("stomach or spleen");
+  if (missing.empty()) return;
+  Add(missing.size() == 3,
+      absl::StrFormat("no label for %s: the domes are guessed from the lungs alone there",
+                      absl::StrJoin(missing, ", ")),
+      findings);
+}
+
+void FindExtrapolation(const v1::DerivedDiaphragm& sheet, Findings& findings) {
+  constexpr double kLeast = 0.25, kMost = 0.5;
+  if (sheet.extrapolated() <= kLeast) return;
+  std::vector<std::string> sectors;
+  for (const v1::ExtrapolatedSector& sector : sheet.sectors()) sectors.push_back(sector.where());
+  Add(sheet.extrapolated() > kMost,
+      absl::StrFormat("%.0f %% of the diaphragm is extrapolated, not seen (%s)", 100 * sheet.extrapolated(),
+                      absl::StrJoin(sectors, "; ")),
+      findings);
+}
+
+void FindOddAxes(const v1::PatientReport& report, Findings& findings) {
+  constexpr double kNarrow = 25, kWide = 90;  // [degree]; adults have 30 to 82
+  std::vector<std::string> odd;
+  for (const v1::PatientRib& rib : report.ribs()) {
+    if (rib.axis_degrees() >= kNarrow && rib.axis_degrees() <= kWide) continue;
+    odd.push_back(absl::StrFormat("%s %.0f", rib.body(), rib.axis_degrees()));
+  }
+  if (odd.empty()) return;
+  Add(4 * odd.size() >= static_cast<std::size_t>(report.ribs_size()),
+      absl::StrFormat(
+          "axes of ribs are at angles to the midsagittal plane that no person has [degree] (%s): these ribs "
+          "would move inwards or not at all; check that their necks are in the volume and labelled",
+          absl::StrJoin(odd, ", ")),
+      findings);
+}
+
+// Returns the height of the sheet's highest point with |x| in the interval [m].
+double Highest(const Mesh& sheet, double from, double to) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < sheet.vertices.cols(); ++i) {
+    const double x = std::abs(sheet.vertices(0, i));
+    if (x >= from && x <= to) highest = std::max(highest, sheet.vertices(2, i));
+  }
+  return highest;
+}
+
+void FindOddSheet(const Mesh& sheet, const v1::DerivedDiaphragm& report, Findings& findings) {
+  constexpr double kMiddle = 0.2, kMostTower = 15e-3;               // of half the width; [m]
+  constexpr double kSmallest = 500, kLargest = 1600, kCell = 5e-3;  // [cm^2], [m]
+  constexpr int kMostCrossings = 20;
+  const double half = sheet.vertices.row(0).cwiseAbs().maxCoeff();
+  const double tower = Highest(sheet, 0, kMiddle * half) - Highest(sheet, kMiddle * half, half);
+  if (tower > 0) {
+    Add(tower > kMostTower,
+        absl::StrFormat(
+            "the middle of the diaphragm is %.0f mm above its domes: it was drawn up between the lungs; label "
+            "the heart",
+            1e3 * tower),
+        findings);
+  }
+  if (const int crossings = SelfCrossings(sheet, kCell); crossings > 0) {
+    Add(crossings >= kMostCrossings,
+        absl::StrFormat("the diaphragm crosses itself at rest in %d places: it is crumpled", crossings), findings);
+  }
+  if (report.area_cm2() < kSmallest || report.area_cm2() > kLargest) {
+    Add(false, absl::StrFormat("the diaphragm has %.0f cm2; adults have 700 to 1,300", report.area_cm2()), findings);
+  }
+}
+
+}  // namespace
+
+v1::Readiness JudgeReadiness(const LabelVolume& volume, const std::vector<Part>& parts,
+                             const std::vector<PatientBody>& bodies, const v1::PatientReport& report) {
+  Findings findings;
+  FindCutLungs(volume, parts, findings);
+  FindCutRibs(volume, parts, findings);
+  FindMissingRibs(parts, findings);
+  FindMissingOrgans(parts, findings);
+  FindExtrapolation(report.diaphragm(), findings);
+  FindOddAxes(report, findings);
+  const auto middle =
+      std::find_if(bodies.begin(), bodies.end(), [](const PatientBody& body) { return body.name == kMiddleBody; });
+  if (middle != bodies.end()) FindOddSheet(middle->mesh, report.diaphragm(), findings);
+  std::stable_sort(findings.begin(), findings.end(),
+                   [](const auto& a, const auto& b) { return a.verdict() > b.verdict(); });
+  v1::Readiness readiness;
+  readiness.set_verdict(findings.empty() ? v1::READINESS_VERDICT_READY : findings.front().verdict());
+  readiness.mutable_findings()->Assign(findings.begin(), findings.end());
+  return readiness;
+}
+
+}  // namespace phrenic::imaging
