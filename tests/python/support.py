@@ -10,6 +10,7 @@ from typing import Any, Callable
 import grpc
 
 import phrenic
+from phrenic.local import binary
 from phrenic.v1 import server_pb2, server_pb2_grpc, session_pb2, session_pb2_grpc
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -84,3 +85,8 @@ def failing(code: grpc.StatusCode, times: int, then: Any) -> Callable[[Any, grpc
         return then(request) if callable(then) else then
 
     return answer
+
+
+def program(name: str) -> str:
+    """A program of the build that the package lies in: beside phrenicd."""
+    return str(Path(binary()).with_name(name))

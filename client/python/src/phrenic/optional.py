@@ -17,6 +17,7 @@ def need(module: str, what: str, remedy: str) -> Any:
     try:
         return import_module(module)
     except ModuleNotFoundError as error:
-        if error.name != module.partition(".")[0]:
-            raise
-        raise ModuleNotFoundError(f"{what} needs {error.name}: {remedy}", name=error.name) from None
+        package = module.partition(".")[0]
+        if (error.name or "").partition(".")[0] != package:
+            raise  # the package is there, and lacks something itself
+        raise ModuleNotFoundError(f"{what} needs {package}: {remedy}", name=package) from None
