@@ -72,6 +72,13 @@ class ViewTest(SessionTest):
         with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "http://"):
             notebook.view("javascript:alert(1)")
 
+    def test_a_session_without_a_server_is_shown_as_text(self):
+        session = phrenic.Session("cube-springs")
+        self.assertIn("Open in a tab", notebook.shown(session))
+        with mock.patch.object(phrenic.Server, "viewer", side_effect=phrenic.errors.Unavailable("gone")):
+            self.assertIsNone(notebook.shown(session))
+        session.close()
+
     def test_a_role_is_one_that_there_is(self):
         with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "did you mean viewer"):
             notebook.view(self.session(), role="viewr")

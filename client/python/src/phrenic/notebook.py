@@ -15,13 +15,13 @@ import io
 import urllib.request
 from html import escape
 from pathlib import Path
-from typing import Any, Iterable, Mapping, Sequence, Union
+from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 from urllib.parse import urlsplit
 
 import numpy as np
 
 from .call import Call, one
-from .errors import FailedPrecondition, InvalidArgument
+from .errors import Error, FailedPrecondition, InvalidArgument
 from .frame import Frame
 from .names import enum_number, look_up
 from .optional import need
@@ -68,6 +68,15 @@ def view(session: Union[Session, str], height: int = 600, role: str = "", hours:
     if not address or not server.about.viewer_is_built:
         raise FailedPrecondition(f"{server.address} serves no viewer: build it with deploy/run, or start phrenicd with --web")
     return View(address + _joined(session, role, hours), height, problem_of(address))
+
+
+def shown(session: Session) -> Optional[str]:
+    """Returns the session as notebooks show it (Session._repr_html_): its viewer, or None, for its text, where the server
+    serves none or does not answer."""
+    try:
+        return view(session)._repr_html_()
+    except Error:
+        return None
 
 
 def _joined(session: Session, role: str, hours: float) -> str:
