@@ -19,6 +19,8 @@ from phrenic import notebook
 from support import EXAMPLES, REPOSITORY, SessionTest, program
 
 NOTEBOOKS = sorted((EXAMPLES / "notebooks").glob("*.ipynb"))
+ALONE = ["--HTMLExporter.mathjax_url=", "--HTMLExporter.require_js_url="]
+"""The page needs no other file."""
 ORIGIN = "http://localhost:8888"
 
 
@@ -118,7 +120,7 @@ class ExamplesTest(unittest.TestCase):
                 self.assertEqual((cell.get("outputs", []), cell.get("execution_count")), ([], None), path.name)
 
     def page(self, path: Path, folder: str) -> str:
-        words = [sys.executable, "-m", "nbconvert", "--to", "html", "--execute", "--output-dir", folder, str(path)]
+        words = [sys.executable, "-m", "nbconvert", "--to", "html", "--execute", "--output-dir", folder, *ALONE, str(path)]
         environment = {**os.environ, "PHRENIC": program("phrenic"), "IPYTHONDIR": folder, "JUPYTER_RUNTIME_DIR": folder,
                        "MPLCONFIGDIR": folder}  # fmt: skip
         started = time.monotonic()
@@ -141,3 +143,4 @@ class ExamplesTest(unittest.TestCase):
                     for part in expected[path.stem]:
                         self.assertIn(part, page)
                     self.assertNotIn("Traceback", page)
+                    self.assertNotRegex(page, r'<(script|link|img)[^>]* (src|href)="(https?|file):', "it needs no other file")

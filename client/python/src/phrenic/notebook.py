@@ -134,13 +134,14 @@ def plot(of: Union[Series, Sequence[Run], Mapping[str, Series]], *measures: str)
         raise InvalidArgument("of: there is nothing to plot")
     names = measures or tuple(next(iter(curves.values()))[1])
     figure = Figure(figsize=(7, 2.2 * max(len(names), 1) + 0.4), layout="constrained")
-    for axes, name in zip(figure.subplots(max(len(names), 1), sharex=True, squeeze=False)[:, 0], names):
+    panels = figure.subplots(max(len(names), 1), sharex=True, squeeze=False)[:, 0]
+    for axes, name in zip(panels, names):
         for label, (times, values, units) in curves.items():
             axes.plot(times, look_up(values, name, "measure"), label=label)
             axes.set_ylabel(f"{name} [{units[name]}]" if name in units else name)
-        if len(curves) > 1:
-            axes.legend(fontsize="small")
-    figure.axes[-1].set_xlabel("time [s]")
+    panels[-1].set_xlabel("time [s]")
+    if len(curves) > 1:
+        panels[0].legend(fontsize="small", loc="upper left", bbox_to_anchor=(1, 1))
     return Plot(figure)
 
 

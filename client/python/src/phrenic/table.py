@@ -116,7 +116,7 @@ class Table(Sequence[dict[str, Any]]):
             return "(no rows)"
         cells = [[name for name in self.columns]] + [[_cell(r[name]) for name in self.columns] for r in self._rows]
         widths = [max(len(line[i]) for line in cells) for i in range(len(self.columns))]
-        numeric = [any(isinstance(r[name], (int, float)) for r in self._rows) for name in self.columns]
+        numeric = [self._has_numbers(name) for name in self.columns]
         return "\n".join(
             "  ".join(
                 text.rjust(width) if right else text.ljust(width) for text, width, right in zip(line, widths, numeric)
@@ -124,12 +124,19 @@ class Table(Sequence[dict[str, Any]]):
             for line in cells
         )
 
+    def _has_numbers(self, name: str) -> bool:
+        return any(isinstance(r[name], (int, float, np.number)) for r in self._rows)
+
     def _repr_html_(self) -> str:
         """The table as notebooks show it."""
-        head = "".join(f"<th>{escape(name)}</th>" for name in self.columns)
-        body = "".join(
-            "<tr>" + "".join(f"<td>{escape(_cell(r[name]))}</td>" for name in self.columns) + "</tr>" for r in self._rows
-        )
+        sides = {name: "right" if self._has_numbers(name) else "left" for name in self.columns}
+
+        def cells(tag: str, texts: Iterable[str]) -> str:
+            each = zip(texts, sides.values())
+            return "".join(f'<{tag} style="text-align:{side}">{escape(text)}</{tag}>' for text, side in each)
+
+        head = cells("th", self.columns)
+        body = "".join(f"<tr>{cells('td', (_cell(r[name]) for name in self.columns))}</tr>" for r in self._rows)
         return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
     def __repr__(self) -> str:
@@ -166,4 +173,4 @@ def _written(text: str, path: Optional[Union[str, Path]]) -> str:
 def _cell(value: Any) -> str:
     if value is None:
         return "-"
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    return f"{value:.4g}" if isinstance(value, (float, np.floating)) else str(value)
