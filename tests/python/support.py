@@ -29,10 +29,10 @@ class SessionTest(unittest.TestCase):
 class FakeServer(server_pb2_grpc.ServerServiceServicer, session_pb2_grpc.SessionServiceServicer):
     """Answers from a table of functions, and notes each call with its metadata."""
 
-    def __init__(self) -> None:
+    def __init__(self, **options: Any) -> None:
         self.calls: list[tuple[str, Any, dict[str, str]]] = []
         self.answers: dict[str, Callable[[Any, grpc.ServicerContext], Any]] = {}
-        self._server = grpc.server(futures.ThreadPoolExecutor(2))
+        self._server = grpc.server(futures.ThreadPoolExecutor(2), options=list(options.items()))
         server_pb2_grpc.add_ServerServiceServicer_to_server(self, self._server)
         session_pb2_grpc.add_SessionServiceServicer_to_server(self, self._server)
         self.address = f"127.0.0.1:{self._server.add_insecure_port('127.0.0.1:0')}"
@@ -55,6 +55,9 @@ class FakeServer(server_pb2_grpc.ServerServiceServicer, session_pb2_grpc.Session
     def GetSession(self, request, context):  # noqa: N802
         session = session_pb2.Session(id=request.session_id)
         return self._answer("GetSession", request, context, session_pb2.GetSessionResponse(session=session))
+
+    def ListSessions(self, request, context):  # noqa: N802
+        return self._answer("ListSessions", request, context, session_pb2.ListSessionsResponse())
 
     def CreateSession(self, request, context):  # noqa: N802
         answer = session_pb2.CreateSessionResponse(session={"id": "fake"}, control_token="key")
