@@ -16,6 +16,7 @@ import numpy as np
 
 import phrenic
 from phrenic import notebook
+from phrenic.local import binary
 from support import EXAMPLES, REPOSITORY, SessionTest, program
 
 NOTEBOOKS = sorted((EXAMPLES / "notebooks").glob("*.ipynb"))
@@ -80,6 +81,23 @@ class ViewTest(SessionTest):
         with mock.patch.object(phrenic.Server, "viewer", side_effect=phrenic.errors.Unavailable("gone")):
             self.assertIsNone(notebook.shown(session))
         session.close()
+
+    def test_a_join_link_admits_who_has_the_notebook(self):
+        with tempfile.TemporaryDirectory() as folder:
+            tokens = ["--tokens", str(Path(folder, "tokens"))]
+            words = [binary(), *tokens, "token", "add", "--name", "anna", "--role", "owner"]
+            token = subprocess.run(words, capture_output=True, text=True, check=True).stdout.strip()
+            with phrenic.local(flags=tokens) as local, phrenic.connect(local.address, token=token) as server:
+                session = self.session(server=server)
+                self.assertNotIn("#join=", repr(notebook.view(session)))
+                address, _, secret = repr(notebook.view(session, role="viewer", hours=1)).partition("#join=")
+                self.assertIn(f"?session={session.id}", address)
+                with mock.patch.dict(os.environ, {"PHRENIC_JOIN": secret}):
+                    with phrenic.connect(local.address) as joined:
+                        self.assertEqual(joined.attach(session.id).scene, "cube-springs")
+                session.close()
+        with self.assertRaisesRegex(phrenic.errors.FailedPrecondition, "the server has no accounts"):
+            notebook.view(self.session(), role="viewer")
 
     def test_a_role_is_one_that_there_is(self):
         with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "did you mean viewer"):

@@ -56,8 +56,8 @@ class View:
 def view(session: Union[Session, str], height: int = 600, role: str = "", hours: float = 2) -> View:
     """Returns the viewer of a session, `height` pixels high, as the last value of a notebook's cell shows it.
 
-    `session`: a Session, or the address of a viewer. `role`: "viewer" or "controller" adds a join link that admits whoever
-    has the notebook, for `hours`, on a server with accounts; without it the viewer asks for a token. FailedPrecondition if
+    `session`: a Session, or the address of a viewer. `role`: "viewer" or "controller" adds a join link, by which readers
+    of the notebook are admitted for `hours`, on a server with accounts; without it the viewer asks for a token. FailedPrecondition if
     the server serves no viewer."""
     if isinstance(session, str):
         if urlsplit(session).scheme not in ("http", "https"):
