@@ -3,8 +3,8 @@
 
     proto/without_optional.py OUT           # OUT/phrenic/v1/*.proto
 
-Each `optional T name = 1;` becomes `oneof _name { T name = 1; }`, which is what newer versions make of it: the same bytes on
-the wire, and has_name() or HasField("name") as before.
+Each `optional T name = 1;` becomes `oneof _name { T name = 1; }`, which is what newer versions make of it: the same
+bytes on the wire, and has_name() or HasField("name") as before.
 """
 
 import re

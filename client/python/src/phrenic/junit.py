@@ -34,8 +34,9 @@ def junit(suite: str, checks: Sequence[Check], path: Optional[Union[str, Path]] 
     """
     suite = _legal(suite)
     root = ElementTree.Element("testsuites")
-    counts = {"tests": len(checks), "failures": sum(bool(c.failure) for c in checks), "skipped": sum(c.skipped for c in checks)}
-    group = ElementTree.SubElement(root, "testsuite", name=suite, **{k: str(n) for k, n in counts.items()})
+    failed, skipped = sum(bool(each.failure) for each in checks), sum(each.skipped for each in checks)
+    counts = {"tests": str(len(checks)), "failures": str(failed), "skipped": str(skipped)}
+    group = ElementTree.SubElement(root, "testsuite", {"name": suite, **counts})
     for check in checks:
         case = ElementTree.SubElement(group, "testcase", classname=suite, name=_legal(check.name))
         if check.skipped:

@@ -145,7 +145,7 @@ def _add(variables: dict[str, Variable], name: str, variable: Variable) -> None:
     """InvalidArgument if a body and a measure have the same name."""
     name = name.replace("/", "_")
     if name in variables:
-        raise InvalidArgument(f"bodies: {name} is also the name of a measure or of another body: choose bodies without it")
+        raise InvalidArgument(f"bodies: {name} is also the name of a measure or of a body: choose others")
     variables[name] = variable
 
 

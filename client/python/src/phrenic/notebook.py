@@ -57,8 +57,8 @@ def view(session: Union[Session, str], height: int = 600, role: str = "", hours:
     """Returns the viewer of a session, `height` pixels high, as the last value of a notebook's cell shows it.
 
     `session`: a Session, or the address of a viewer. `role`: "viewer" or "controller" adds a join link, by which readers
-    of the notebook are admitted for `hours`, on a server with accounts; without it the viewer asks for a token. FailedPrecondition if
-    the server serves no viewer."""
+    of the notebook are admitted for `hours`, on a server with accounts; without it the viewer asks for a token.
+    FailedPrecondition if the server serves no viewer."""
     if isinstance(session, str):
         if urlsplit(session).scheme not in ("http", "https"):
             raise InvalidArgument(f"session: {session} is not an address that begins with http:// or https://")
@@ -66,7 +66,8 @@ def view(session: Union[Session, str], height: int = 600, role: str = "", hours:
     server = Server(session._connection)
     address = server.viewer(session)
     if not address or not server.about.viewer_is_built:
-        raise FailedPrecondition(f"{server.address} serves no viewer: build it with deploy/run, or start phrenicd with --web")
+        remedy = "build it with deploy/run, or start phrenicd with --web"
+        raise FailedPrecondition(f"{server.address} serves no viewer: {remedy}")
     return View(address + _joined(session, role, hours), height, problem_of(address))
 
 
