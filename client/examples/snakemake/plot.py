@@ -1,6 +1,7 @@
 """The range of a measure against the parameter, a curve a scene. Snakemake defines `snakemake`."""
 
 import csv
+import sys
 
 import matplotlib
 
@@ -9,7 +10,11 @@ from matplotlib import pyplot  # noqa: E402
 
 parameter, measure = snakemake.params.parameter, snakemake.params.measure  # noqa: F821
 with open(snakemake.input[0], newline="", encoding="utf-8") as file:  # noqa: F821
-    rows = [row for row in csv.DictReader(file) if row["measure"] == measure]
+    everything = list(csv.DictReader(file))
+rows = [row for row in everything if row["measure"] == measure]
+without = {row["scene"] for row in everything} - {row["scene"] for row in rows}
+if without:
+    print(f"not in the picture: {', '.join(sorted(without))} without the measure {measure}", file=sys.stderr)
 if not rows:
     raise SystemExit(f"no run has the measure {measure}: choose another with --config measure=NAME (runs.csv has all)")
 
