@@ -6,7 +6,7 @@ stage_table() {
   cat <<'TEXT'
 format     20 clang-format and prettier
 scripts    40 shellcheck, and the tests of deploy/
-proto       5 buf's lint
+proto       5 buf's lint; that clients of the last release go on working
 web        40 type check, unit tests and build of the viewer
 build     430 the Release build by gcc, warnings as errors
 tests     300 what depends on that build: laws of mechanics, formats, physiology, judges, benches, trials
@@ -206,8 +206,18 @@ check_buf() {
   (cd "$root/proto" && ../web/node_modules/.bin/buf lint --config '{"version":"v2","lint":{"use":["STANDARD"]}}')
 }
 
+# check_breaking [FOLDER] compares the protos with those of the last release, which the file holds: a client of that
+# release must still compile and understand every message.
+released=$root/tests/proto/released.binpb.gz
+check_breaking() {
+  (cd "${1:-$root/proto}" && "$root/web/node_modules/.bin/buf" breaking --against "$released" \
+    --config '{"version":"v2","breaking":{"use":["FILE"]}}') ||
+    { echo "phrenic: a client of the last release breaks (above). Keep what it names, mark it deprecated and add a field." && false; }
+}
+
 stage_proto() {
   check check_buf
+  check check_breaking
 }
 
 # --- the viewer ---

@@ -1,5 +1,7 @@
-# What is installed where, and the Debian package of it: cpack -G DEB in the build folder, once web/dist is built.
+# What is installed where, and the Debian packages of it, phrenic and python3-phrenic: cpack -G DEB in the build folder,
+# once web/dist is built.
 include(GNUInstallDirs)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME programs)
 set(PHRENIC_MADE ${PROJECT_BINARY_DIR}/package)
 
 # The command line's own words: its manual and what completes it in three shells.
@@ -29,23 +31,44 @@ install(FILES deploy/phrenicd.toml DESTINATION /etc/phrenic)
 install(FILES deploy/nginx/guard.conf deploy/nginx/cluster.conf deploy/nginx/server.conf deploy/nginx/limits.conf
               deploy/nginx/listen.conf DESTINATION /etc/nginx/phrenic)
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY ${PROJECT_BINARY_DIR}/python/src/phrenic DESTINATION lib/python3/dist-packages
+install(DIRECTORY client/examples/snakemake DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/python/src/phrenic DESTINATION lib/python3/dist-packages COMPONENT python
         PATTERN __pycache__ EXCLUDE)
-install(DIRECTORY client/python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY client/python/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-phrenic COMPONENT python)
+install(FILES client/python/README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-phrenic COMPONENT python)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_CONTACT "The Phrenic developers <phrenic@localhost>")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "The breathing diaphragm, simulated and streamed")
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
-    "A server that simulates the breathing diaphragm by a network of springs and rigid links, a viewer for
- browsers, and a command line. For research and teaching; not for clinical use.")
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL programs python)
+set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION
+    "The breathing diaphragm, simulated and streamed
+A server that simulates the breathing diaphragm by a network of springs and rigid links, a viewer for
+browsers, and a command line. For research and teaching; not for clinical use.")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+    "The breathing diaphragm, simulated: for Python
+Runs simulations on a server of Phrenic, or on one that it starts, and returns numpy arrays. For research
+and teaching; not for clinical use.")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "ca-certificates, nginx, python3-grpcio, python3-numpy, python3-protobuf")
-set(CPACK_DEBIAN_PACKAGE_PROVIDES "python3-phrenic")
-set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA
-    "${PROJECT_SOURCE_DIR}/deploy/debian/postinst;${PROJECT_SOURCE_DIR}/deploy/debian/prerm;${PROJECT_SOURCE_DIR}/deploy/debian/postrm;${PROJECT_SOURCE_DIR}/deploy/debian/conffiles")
 set(CPACK_STRIP_FILES ON)
+
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME phrenic)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "ca-certificates, nginx, python3-phrenic")
+set(control ${PROJECT_SOURCE_DIR}/deploy/debian)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_EXTRA
+    "${control}/postinst;${control}/prerm;${control}/postrm;${control}/conffiles")
+
+# Without compiled code of its own, and useful without the programs of this machine, with a server elsewhere. Up to now
+# its files were in phrenic.
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-phrenic)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.9), python3-grpcio, python3-numpy, python3-protobuf")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "phrenic (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-pandas, python3-scipy, python3-xarray")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_REPLACES phrenic)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${control}/python/prerm")
 include(CPack)

@@ -103,7 +103,7 @@ in_checks() {
 
 stages_are_counted_and_timed() {
   rm -f "$scratch/times"
-  expect StagesSayHowLongIsLeft "$(in_checks run_stages proto web)" "==> Stage proto (1 of 2): buf's lint. About 45 s left." \
+  expect StagesSayHowLongIsLeft "$(in_checks run_stages proto web)" "==> Stage proto (1 of 2): buf's lint; that clients of the last release go on working. About 45 s left." \
     "==> Stage web (2 of 2)" "About 40 s left."
   expect_equal TimesOfPassedStagesAreKept "$(sed 's/ [01]$//' "$scratch/times")" proto
   echo "web 400" >>"$scratch/times"
@@ -122,6 +122,29 @@ checks_run_beside_tests() {
     begin_beside tidy; stage_e2e; ps -o stat= -p "$beside"; trap finish EXIT')
   expect_equal TheyPauseWhileBrowsersDraw "$(head -2 <<<"$output" | cut -c1 | tr -d '\n' | tr RSD r)" Tr
   expect_equal WithoutTestsTheyRunAlone "$(in_checks run_stages tidy | grep -c 'priority 19')" 0
+}
+
+# Changes of the protos that would break a client of the last release, each by a sed script on one file.
+broken_protos_are_refused() {
+  local folder=$scratch/protos
+  [[ -x $root/web/node_modules/.bin/buf ]] || return 0
+  mkdir -p "$folder"
+  expect_equal TheProtosKeepTheLastReleases "$(in_checks check_breaking)" ""
+  breaks ARemovedFieldIsRefused server.proto '/ web_port = /d' '"web_port" on message "GetServerResponse" was deleted'
+  breaks ARenumberedFieldIsRefused server.proto 's/ web_port = 2;/ web_port = 22;/' "was deleted" "Keep what it names"
+  breaks ARetypedFieldIsRefused server.proto 's/int32 web_port/string web_port/' "changed type" "status 1"
+  breaks ARemovedCallIsRefused server.proto '/rpc GetServer(/d' 'RPC "GetServer"'
+  cp -r "$root/proto/phrenic" "$folder"
+  sed -i 's/bool encrypted = 5;/&\n  string motto = 600;/' "$folder/phrenic/v1/server.proto"
+  expect_equal ANewFieldIsNot "$(in_checks check_breaking "$folder")" ""
+}
+
+breaks() {
+  local law=$1 file=$2 script=$3
+  shift 3
+  cp -r "$root/proto/phrenic" "$folder"
+  sed -i "$script" "$folder/phrenic/v1/$file"
+  expect "$law" "$(in_checks check_breaking "$folder")" "$@"
 }
 
 failed_tests_are_named() {
@@ -175,6 +198,7 @@ service_is_confined
 guards_are_valid
 stages
 failed_tests_are_named
+broken_protos_are_refused
 stages_are_counted_and_timed
 checks_run_beside_tests
 units_are_checked_once

@@ -10,6 +10,7 @@ from typing import Any, Callable
 import grpc
 
 import phrenic
+from phrenic.local import binary
 from phrenic.v1 import server_pb2, server_pb2_grpc, session_pb2, session_pb2_grpc
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -28,10 +29,10 @@ class SessionTest(unittest.TestCase):
 class FakeServer(server_pb2_grpc.ServerServiceServicer, session_pb2_grpc.SessionServiceServicer):
     """Answers from a table of functions, and notes each call with its metadata."""
 
-    def __init__(self) -> None:
+    def __init__(self, **options: Any) -> None:
         self.calls: list[tuple[str, Any, dict[str, str]]] = []
         self.answers: dict[str, Callable[[Any, grpc.ServicerContext], Any]] = {}
-        self._server = grpc.server(futures.ThreadPoolExecutor(2))
+        self._server = grpc.server(futures.ThreadPoolExecutor(2), options=list(options.items()))
         server_pb2_grpc.add_ServerServiceServicer_to_server(self, self._server)
         session_pb2_grpc.add_SessionServiceServicer_to_server(self, self._server)
         self.address = f"127.0.0.1:{self._server.add_insecure_port('127.0.0.1:0')}"
@@ -54,6 +55,9 @@ class FakeServer(server_pb2_grpc.ServerServiceServicer, session_pb2_grpc.Session
     def GetSession(self, request, context):  # noqa: N802
         session = session_pb2.Session(id=request.session_id)
         return self._answer("GetSession", request, context, session_pb2.GetSessionResponse(session=session))
+
+    def ListSessions(self, request, context):  # noqa: N802
+        return self._answer("ListSessions", request, context, session_pb2.ListSessionsResponse())
 
     def CreateSession(self, request, context):  # noqa: N802
         answer = session_pb2.CreateSessionResponse(session={"id": "fake"}, control_token="key")
@@ -84,3 +88,8 @@ def failing(code: grpc.StatusCode, times: int, then: Any) -> Callable[[Any, grpc
         return then(request) if callable(then) else then
 
     return answer
+
+
+def program(name: str) -> str:
+    """A program of the build that the package lies in: beside phrenicd."""
+    return str(Path(binary()).with_name(name))

@@ -1,5 +1,7 @@
 """What goes over the wire: metadata, repeats, errors. The server is a fake whose answers the test chooses."""
 
+import subprocess
+import sys
 import time
 import unittest
 
@@ -120,3 +122,25 @@ class CallsTest(unittest.TestCase):
     def test_a_missing_certificate_is_named(self):
         with self.assertRaisesRegex(errors.InvalidArgument, "tls: /no/ca.pem"):
             phrenic.connect("https://127.0.0.1:1", tls="/no/ca.pem")
+
+
+CHILD = """
+import sys, time, phrenic
+server = phrenic.connect(sys.argv[1], retries=0)
+time.sleep(float(sys.argv[2]))
+server.sessions()
+"""
+
+
+class IdleTest(unittest.TestCase):
+    def test_an_idle_connection_answers_the_servers_pings(self):
+        pings = {"grpc.keepalive_time_ms": 1000, "grpc.keepalive_timeout_ms": 3000, "grpc.keepalive_permit_without_calls": 1,
+                 "grpc.http2.max_pings_without_data": 0}  # fmt: skip
+        fake = FakeServer(**pings)
+        self.addCleanup(fake.stop)
+        # What has not answered is closed after 4 s, and a call just then is lost. Processes of their own, as any thread
+        # that waits in gRPC reads for all connections of its process.
+        words = [sys.executable, "-c", CHILD, fake.address]
+        idle = [subprocess.Popen([*words, str(t)], stderr=subprocess.PIPE, text=True) for t in (4.15, 4.35, 4.55, 4.75)]
+        said = [child.communicate(timeout=60)[1] for child in idle]
+        self.assertEqual([child.returncode for child in idle], [0] * len(idle), said)

@@ -127,6 +127,6 @@ class JobsTest(SessionTest):
         table = phrenic.Table([{"a": 1.0, "b": "x"}, {"a": None, "b": "y"}])
         np.testing.assert_array_equal(table["a"], [1, np.nan])
         self.assertEqual(table.where(b="y")[0]["a"], None)
-        self.assertIn("<td>&lt;b&gt;</td>", phrenic.Table([{"a": "<b>"}])._repr_html_())
+        self.assertIn(">&lt;b&gt;</td>", phrenic.Table([{"a": "<b>"}])._repr_html_())
         with self.assertRaisesRegex(KeyError, "there is no column c"):
             table["c"]

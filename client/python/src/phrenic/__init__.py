@@ -8,14 +8,19 @@
 (8, 3)
 
 A session without a server runs on one that this process starts, and that ends with it. `phrenic.connect(address)` calls
-a server that runs. `phrenic.aio` is the same for asyncio, `phrenic.gym` has environments for reinforcement learning,
-`phrenic.v1` the generated messages.
+a server that runs. `phrenic.aio` is the same for asyncio, `phrenic.gym` and `phrenic.vector` have environments for
+reinforcement learning, `phrenic.notebook` shows sessions and results in Jupyter, `phrenic.motion` has motions for xarray,
+Zarr and NetCDF, `phrenic.v1` the generated messages.
 """
 
 import os
+from importlib import import_module
+from typing import Any
 
 # gRPC resolves names as other programs do (nsswitch.conf); its own resolver knows DNS and /etc/hosts alone.
 os.environ.setdefault("GRPC_DNS_RESOLVER", "native")
+# An idle connection is polled every second, not every five: phrenicd pings it, and closes it after three without an answer.
+os.environ.setdefault("GRPC_CLIENT_CHANNEL_BACKUP_POLL_INTERVAL_MS", "1000")
 
 from . import aio, errors  # noqa: E402
 from .connection import Tls
@@ -53,3 +58,10 @@ __all__ = [
     "errors",
     "local",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Imports the modules that few programs need when they are first used: phrenic.motion.to_netcdf(...)."""
+    if name in ("gym", "motion", "notebook", "vector"):
+        return import_module(f".{name}", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

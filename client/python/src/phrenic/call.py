@@ -11,6 +11,7 @@ from google.protobuf.message import Message
 
 from .errors import Error, Unavailable
 from .v1 import (
+    access_pb2_grpc,
     compare_pb2_grpc,
     export_pb2_grpc,
     frames_pb2_grpc,
@@ -20,6 +21,7 @@ from .v1 import (
 )
 
 SERVICES: dict[str, Callable[[Any], Any]] = {
+    "AccessService": access_pb2_grpc.AccessServiceStub,
     "CompareService": compare_pb2_grpc.CompareServiceStub,
     "ExportService": export_pb2_grpc.ExportServiceStub,
     "FrameService": frames_pb2_grpc.FrameServiceStub,

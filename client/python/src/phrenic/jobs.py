@@ -13,6 +13,7 @@ import numpy as np
 
 from .call import LONG, Call, Operation
 from .errors import DataLoss, FailedPrecondition, InvalidArgument, NotFound, Unavailable
+from .junit import Check, junit
 from .names import fill, is_repeated, nearest, row
 from .table import Table
 from .v1 import compare_pb2, export_pb2, physiology_pb2, session_pb2, study_pb2
@@ -180,6 +181,19 @@ class Physiology:
     def outside(self) -> Table:
         """The checks whose value is outside its range."""
         return self.rows.where(verdict="outside")
+
+    def to_junit(self, path: Union[str, Path, None] = None, suite: str = "physiology") -> str:
+        """Returns the checks as JUnit XML, and writes it to `path`: a value outside its range is a failed test, one that
+        is not judged a skipped one."""
+        return junit(suite, [_check_of(row) for row in self.rows], path)
+
+
+def _check_of(row: Mapping[str, Any]) -> Check:
+    """The check of one row, in the words of `phrenic physiology --junit`."""
+    name, note = f"{row['breath']}: {row['what']}", f" ({row['note']})" if row["note"] else ""
+    if row["verdict"] == "outside":
+        return Check(name, f"{row['value']:.4g} is outside {row['low']:g} to {row['high']:g} {row['unit']}{note}")
+    return Check(name, skipped=row["verdict"] != "inside")
 
 
 def physiology(source: session_pb2.SceneSource, presets: Any, progress: Progress) -> Operation[Physiology]:

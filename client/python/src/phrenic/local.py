@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
@@ -10,6 +11,7 @@ import threading
 import time
 from pathlib import Path
 from typing import Optional, Sequence, Union
+from urllib.parse import urlsplit
 
 from .errors import Unavailable
 
@@ -40,6 +42,7 @@ class Process:
         words = [program, "--listen", "127.0.0.1:0", "--web", "127.0.0.1:0", "--start", "none", "--store", "none"]
         words += ["--spool", self._folder.name, "--max-sessions", "1000", "--pause-minutes", "0"]
         words += ["--data", str(data)] if data else []
+        words += [word for origin in notebook_origins() for word in ("--allow-origin", origin)]
         self._words = [*_tied(), *words, *flags]
         self._process: Optional[subprocess.Popen[bytes]] = None
         self._started = threading.Event()
@@ -93,6 +96,36 @@ class Process:
         text = self.log.read_text(errors="replace").strip()
         self.stop()
         raise Unavailable(f"phrenicd did not start: {text}")
+
+
+def notebook_origins() -> list[str]:
+    """Returns the origins of the page of the Jupyter server that started this kernel, so that it may frame the viewer;
+    none in other programs."""
+    parent = os.environ.get("JPY_PARENT_PID", "")
+    try:
+        from jupyter_core.paths import jupyter_runtime_dir
+    except ImportError:
+        return []
+    for kind in ("jpserver", "nbserver"):
+        try:
+            about = json.loads(Path(jupyter_runtime_dir(), f"{kind}-{int(parent)}.json").read_text())
+            return _origins_of(str(about["url"]))
+        except (OSError, ValueError, KeyError, TypeError):
+            continue
+    return []
+
+
+def _origins_of(url: str) -> list[str]:
+    """The origins by which a browser may have opened the address: with both of loopback's names, if it is one.
+
+    >>> _origins_of("http://localhost:8888/lab")
+    ['http://127.0.0.1:8888', 'http://localhost:8888']
+    """
+    parts = urlsplit(url)
+    loopback = {"127.0.0.1", "localhost"}
+    port = f":{parts.port}" if parts.port else ""
+    hosts = loopback if parts.hostname in loopback else {str(parts.hostname)}
+    return [f"{parts.scheme}://{host}{port}" for host in sorted(hosts)]
 
 
 def _tied() -> list[str]:

@@ -77,6 +77,12 @@ class Session(SessionOperations):
     def __exit__(self, *_: Any) -> None:
         self.close()
 
+    def _repr_html_(self) -> Optional[str]:
+        """What a notebook shows: the viewer of this session."""
+        from .notebook import shown
+
+        return shown(self)
+
     def close(self) -> None:
         """Deletes the session, unless it was joined by attach(). A second call has no effect."""
         if self._owned:

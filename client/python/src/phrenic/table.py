@@ -13,13 +13,19 @@ rate             12
 
 from __future__ import annotations
 
+import csv
+import io
+import json
+import math
 from html import escape
-from typing import Any, Iterable, Iterator, Sequence, overload
+from pathlib import Path
+from typing import Any, Iterable, Iterator, Optional, Sequence, Union, overload
 
 import numpy as np
 from google.protobuf.message import Message
 
 from .names import nearest, row
+from .optional import need
 
 
 class Table(Sequence[dict[str, Any]]):
@@ -71,17 +77,46 @@ class Table(Sequence[dict[str, Any]]):
         return Table(r for r in self._rows if all(r.get(name) == value for name, value in conditions.items()))
 
     def to_pandas(self) -> Any:
-        """Returns a pandas.DataFrame. Requires: pandas is installed (python3-pandas)."""
-        import pandas
-
+        """Returns a pandas.DataFrame. Requires: pandas is installed."""
+        pandas = need("pandas", "to_pandas", "apt install python3-pandas, or pip install pandas")
         return pandas.DataFrame(self._rows, columns=self.columns)
+
+    def to_csv(self, path: Union[str, Path, None] = None) -> str:
+        """Returns the table as CSV (RFC 4180), and writes it to `path`. Numbers have all their digits, a missing value is
+        an empty cell, a list is JSON.
+
+        >>> Table([{"what": "rate", "value": 0.1}, {"what": "peak, deep", "value": None}]).to_csv().splitlines()
+        ['what,value', 'rate,0.1', '"peak, deep",']
+        """
+        text = io.StringIO(newline="")
+        lines = csv.writer(text)
+        lines.writerow(self.columns)
+        lines.writerows([_csv_cell(r[name]) for name in self.columns] for r in self._rows)
+        return _written(text.getvalue(), path)
+
+    def to_json_lines(self, path: Union[str, Path, None] = None) -> str:
+        """Returns a JSON document a row, each on its line, and writes them to `path`. NaN and infinity are null, as JSON
+        has no such numbers.
+
+        >>> Table([{"what": "rate", "value": 12.0}, {"what": "peak", "value": float("nan")}]).to_json_lines()
+        '{"what": "rate", "value": 12.0}\\n{"what": "peak", "value": null}\\n'
+        """
+        lines = (json.dumps(_json(r), ensure_ascii=False, allow_nan=False) + "\n" for r in self._rows)
+        return _written("".join(lines), path)
+
+    def to_parquet(self, path: Union[str, Path]) -> None:
+        """Writes an Apache Parquet file. Requires: pyarrow is installed."""
+        pyarrow = need("pyarrow", "to_parquet", "pip install pyarrow (Debian 12 has no package of it), or use to_csv")
+        need("pyarrow.parquet", "to_parquet", "pip install pyarrow").write_table(
+            pyarrow.Table.from_pylist([{name: _plain(value) for name, value in r.items()} for r in self._rows]), path
+        )
 
     def __str__(self) -> str:
         if not self._rows:
             return "(no rows)"
         cells = [[name for name in self.columns]] + [[_cell(r[name]) for name in self.columns] for r in self._rows]
         widths = [max(len(line[i]) for line in cells) for i in range(len(self.columns))]
-        numeric = [any(isinstance(r[name], (int, float)) for r in self._rows) for name in self.columns]
+        numeric = [self._has_numbers(name) for name in self.columns]
         return "\n".join(
             "  ".join(
                 text.rjust(width) if right else text.ljust(width) for text, width, right in zip(line, widths, numeric)
@@ -89,19 +124,53 @@ class Table(Sequence[dict[str, Any]]):
             for line in cells
         )
 
+    def _has_numbers(self, name: str) -> bool:
+        return any(isinstance(r[name], (int, float, np.number)) for r in self._rows)
+
     def _repr_html_(self) -> str:
         """The table as notebooks show it."""
-        head = "".join(f"<th>{escape(name)}</th>" for name in self.columns)
-        body = "".join(
-            "<tr>" + "".join(f"<td>{escape(_cell(r[name]))}</td>" for name in self.columns) + "</tr>" for r in self._rows
-        )
+        sides = {name: "right" if self._has_numbers(name) else "left" for name in self.columns}
+
+        def cells(tag: str, texts: Iterable[str]) -> str:
+            each = zip(texts, sides.values())
+            return "".join(f'<{tag} style="text-align:{side}">{escape(text)}</{tag}>' for text, side in each)
+
+        head = cells("th", self.columns)
+        body = "".join(f"<tr>{cells('td', (_cell(r[name]) for name in self.columns))}</tr>" for r in self._rows)
         return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
     def __repr__(self) -> str:
         return f"Table of {len(self)} rows: {', '.join(self.columns)}"
 
 
+def _plain(value: Any) -> Any:
+    """A number or list of numpy's as Python's."""
+    return value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value
+
+
+def _csv_cell(value: Any) -> Any:
+    value = _plain(value)
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, (list, dict)) else value
+
+
+def _json(value: Any) -> Any:
+    """The value without NaN and infinity, which become None."""
+    value = _plain(value)
+    if isinstance(value, dict):
+        return {name: _json(each) for name, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_json(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _written(text: str, path: Optional[Union[str, Path]]) -> str:
+    if path is not None:
+        with open(path, "w", encoding="utf-8", newline="") as file:
+            file.write(text)
+    return text
+
+
 def _cell(value: Any) -> str:
     if value is None:
         return "-"
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    return f"{value:.4g}" if isinstance(value, (float, np.floating)) else str(value)
