@@ -43,6 +43,25 @@ TEST(PatientCommand, ANiftiFileAndADicomSegmentationAreTheSamePatient) {
   EXPECT_THAT(from_dicom.out + from_dicom.err, Not(HasSubstr("Doe")));
 }
 
+TEST(PatientCommand, ASlabIsRefusedWithReasonsUnlessItIsWantedAnyway) {
+  const std::string slab = PHRENIC_SOURCE_DIR "/../shared/data/labels/totalsegmentator_example_seg.nii.gz";
+  if (!std::filesystem::exists(slab)) GTEST_SKIP() << "there is no " << slab;
+  const std::vector<std::string> words = {"patient",       slab, "--out",      Scratch("slab"),
+                                          "--edge-length", "15", "--vertices", "800"};
+  const Outcome refused = Phrenic(words);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.out, testing::AllOf(HasSubstr("readiness: not usable"), HasSubstr("ribs are missing"),
+                                          HasSubstr("cut by the upper border"), HasSubstr("141")));
+  EXPECT_THAT(refused.err, testing::AllOf(HasSubstr("nothing was written"), HasSubstr("--anyway")));
+  EXPECT_FALSE(std::filesystem::exists(Scratch("slab")));
+  std::vector<std::string> anyway = words;
+  anyway.insert(anyway.end(), {"--anyway", "-o", "json"});
+  const Outcome written = Phrenic(anyway);
+  EXPECT_EQ(written.code, 0) << written.err;
+  EXPECT_EQ(written.json()["readiness"]["verdict"], "READINESS_VERDICT_NOT_USABLE");
+  EXPECT_TRUE(std::filesystem::exists(Scratch("slab/scenes/patient.textproto")));
+}
+
 TEST(PatientCommand, ADicomFileThatIsNoSegmentationIsNamed) {
   const Outcome outcome = MakeCoarsePatient(WriteScratch("empty.nii", std::string(128, '\0') + "DICM"));
   EXPECT_NE(outcome.code, 0);
