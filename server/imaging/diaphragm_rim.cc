@@ -21,17 +21,28 @@ struct Knot {
   double degrees, z;  // azimuth from the front, positive to the left; height [mm]
 };
 
-// Returns the height of the lowest point of ribs 7 to 12 and cartilages in each direction; infinity if there is none.
+// True for what the margin of the sheet follows: the diaphragm's own label, else ribs 7 to 12 and cartilages.
+bool IsMargin(const Part& part, bool labelled) {
+  if (labelled) return part.Is(v1::STRUCTURE_DIAPHRAGM);
+  const bool rib = part.Is(v1::STRUCTURE_RIB) && part.anatomy.number() >= 7;
+  return rib || part.Is(v1::STRUCTURE_COSTAL_CARTILAGE);
+}
+
+// Returns the height of the lowest point of the margin in each direction; infinity if there is none. Bones are apart,
+// so all within a direction count; of the labelled diaphragm, whose margin is steep, those within 1.5 degrees.
 std::vector<double> CostalMargin(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame) {
+  constexpr double kNarrow = 1.5;  // [degrees]
+  const bool labelled = std::ranges::any_of(parts, [](const Part& part) { return part.Is(v1::STRUCTURE_DIAPHRAGM); });
   std::vector<double> lowest(kDirections, kUnknown);
   for (const Part& part : parts) {
-    const bool rib = part.Is(v1::STRUCTURE_RIB) && part.anatomy.number() >= 7;
-    if (!rib && !part.Is(v1::STRUCTURE_COSTAL_CARTILAGE)) continue;
+    if (!IsMargin(part, labelled)) continue;
     for (std::size_t at = 0; at < part.mask.inside.size(); ++at) {
       if (part.mask.inside[at] != 1) continue;
       const Eigen::Vector3d position = part.mask.Position(volume, at), from = position - frame.centre;
       const double degrees = std::atan2(from.x(), -from.y()) / kDegree;
-      const auto direction = (std::lround(degrees / kKnotSpacing) + kDirections) % kDirections;
+      const auto nearest = std::lround(degrees / kKnotSpacing);
+      if (labelled && std::abs(degrees - static_cast<double>(kKnotSpacing * nearest)) > kNarrow) continue;
+      const auto direction = (nearest + kDirections) % kDirections;
       lowest[direction] = std::min(lowest[direction], position.z());
     }
   }
@@ -55,10 +66,24 @@ std::vector<Knot> CostalKnots(const std::vector<double>& lowest, const CageFrame
   return known;
 }
 
+// Returns the height of the tip of a crus: that of the labelled diaphragm if it reaches below L1, else the usual one.
+double CrusTip(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame, v1::Side side) {
+  double lowest = frame.lumbar[0];
+  for (const Part& part : parts) {
+    if (!part.Is(v1::STRUCTURE_DIAPHRAGM)) continue;
+    for (std::size_t at = 0; at < part.mask.inside.size(); ++at) {
+      if (part.mask.inside[at] != 1) continue;
+      const Eigen::Vector3d position = part.mask.Position(volume, at);
+      if (InCrus(frame, position, side)) lowest = std::min(lowest, position.z());
+    }
+  }
+  if (lowest < frame.lumbar[0]) return lowest;
+  return side == v1::SIDE_RIGHT ? frame.lumbar[2] : frame.lumbar[1] - 0.2 * frame.vertebra_height;
+}
+
 // Returns the crus from its lateral edge around the tip to the median arcuate ligament, in degrees from the back.
-std::vector<Knot> CrusKnots(const CageFrame& frame, v1::Side side) {
+std::vector<Knot> CrusKnots(const CageFrame& frame, double tip) {
   const double l1 = frame.lumbar[0], h = frame.vertebra_height;
-  const double tip = side == v1::SIDE_RIGHT ? frame.lumbar[2] : frame.lumbar[1] - 0.2 * h;
   return {{28, l1 + 0.3 * h},
           {20, l1 + 0.2 * h},
           {15, l1 - 0.4 * h},
@@ -70,13 +95,14 @@ std::vector<Knot> CrusKnots(const CageFrame& frame, v1::Side side) {
 }
 
 // Returns the knots of the whole rim from the front, counter-clockwise seen from above: left side first.
-std::vector<Knot> Knots(const std::vector<double>& lowest, const CageFrame& frame, Messages& fallbacks) {
+std::vector<Knot> Knots(const std::vector<double>& lowest, double left_tip, double right_tip, const CageFrame& frame,
+                        Messages& fallbacks) {
   int bridged = 0;
   std::vector<Knot> knots = CostalKnots(lowest, frame, 1, &bridged);
-  for (const Knot& knot : CrusKnots(frame, v1::SIDE_LEFT)) knots.push_back({180 - knot.degrees, knot.z});
+  for (const Knot& knot : CrusKnots(frame, left_tip)) knots.push_back({180 - knot.degrees, knot.z});
   knots.push_back({180, frame.lumbar[0] + 1.3 * frame.vertebra_height});
   std::vector<Knot> right = CostalKnots(lowest, frame, -1, &bridged);
-  for (const Knot& knot : CrusKnots(frame, v1::SIDE_RIGHT)) right.push_back({knot.degrees - 180, knot.z});
+  for (const Knot& knot : CrusKnots(frame, right_tip)) right.push_back({knot.degrees - 180, knot.z});
   for (auto knot = right.rbegin(); knot != right.rend(); ++knot) knots.push_back({knot->degrees + 360, knot->z});
   if (bridged > 0) {
     fallbacks.push_back(
@@ -106,7 +132,9 @@ Knot Spline(const std::vector<Knot>& knots, std::size_t span, double t) {
 anatomy::PlaneLoop FindRim(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,
                            const SmoothSheet& sheet, Messages& fallbacks) {
   constexpr int kSamplesASpan = 12;
-  const std::vector<Knot> knots = Knots(CostalMargin(volume, parts, frame), frame, fallbacks);
+  const double left = CrusTip(volume, parts, frame, v1::SIDE_LEFT);
+  const double right = CrusTip(volume, parts, frame, v1::SIDE_RIGHT);
+  const std::vector<Knot> knots = Knots(CostalMargin(volume, parts, frame), left, right, frame, fallbacks);
   anatomy::PlaneLoop rim;
   for (std::size_t span = 0; span < knots.size(); ++span) {
     for (int i = 0; i < kSamplesASpan; ++i) {
