@@ -30,7 +30,7 @@ void KeepShape(const v1::Scene& surfaces, v1::Body& body) {
     if (!scan && (from.name() != body.name() || IsScannedDiaphragm(from))) continue;
     if (from.has_file()) *body.mutable_file() = from.file();
     if (from.has_generated()) *body.mutable_generated() = from.generated();
-    if (scan) *body.mutable_derived() = from.derived();
+    if (from.has_derived()) *body.mutable_derived() = from.derived();
     if (from.has_offset()) *body.mutable_offset() = from.offset();
     if (from.has_scale()) *body.mutable_scale() = from.scale();
     return;
