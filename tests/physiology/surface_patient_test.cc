@@ -98,7 +98,7 @@ TEST_F(SurfacePatient, WhatIsSeenIsThePersonsDiaphragm) {
   const v1::Scene scene = PatientsScene();
   const auto body = std::ranges::find(scene.bodies(), "diaphragm", &v1::Body::name);
   v1::Body read = *body;
-  *read.mutable_file() = body->derived().file();
+  *read.mutable_file() = v1::SurfaceFile(body->derived().file());
   read.mutable_file()->set_unit(1e-3);
   const Mesh file = *ReadSurface(read);
   const Mesh& seen = model_->bodies[static_cast<size_t>(subject_->parts.sheet)].mesh;

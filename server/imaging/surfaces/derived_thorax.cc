@@ -57,7 +57,7 @@ absl::StatusOr<std::vector<PatientBody>> ReadSurfaces(const BodySource& source, 
           absl::StrCat("\"", scanned->name, "\" and \"", body.name(), "\" both have a file of the diaphragm"));
     }
     v1::Body read = body;
-    if (diaphragm) *read.mutable_file() = body.derived().file();
+    if (diaphragm) *read.mutable_file() = v1::SurfaceFile(body.derived().file());
     schema::FillDefaults(&read);
     absl::StatusOr<Mesh> mesh = source(read);
     if (!mesh.ok()) return mesh.status();

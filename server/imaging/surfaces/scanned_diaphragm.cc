@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "server/mesh/normals.h"
-#include "server/mesh/topology.h"
 #include "server/mesh/triangle_tree.h"
 #include "server/mesh/units.h"
 
@@ -78,6 +77,7 @@ Eigen::VectorXd TowardsMiddle(const VoxelsOf& part, const Mesh& mesh, const Poin
     moves[i] = std::clamp(*middle, -kMostARound, kMostARound);
     weights[i] = 1;
   }
+  for (const int i : mesh.regions.at("insertion")) weights[i] = 0;  // narrow there: neighbours know better
   constexpr int kPasses = 12;
   return Averaged(mesh.triangles, std::move(moves), std::move(weights), kPasses);
 }
@@ -92,11 +92,37 @@ void Relax(Mesh& mesh) {
       count[t[c]] += 2;
     }
   }
-  const std::vector<int> border = BoundaryVertices(mesh.triangles);
-  for (const int i : border) count[i] = 0;
+  for (const int i : mesh.regions.at("rim")) count[i] = 0;
   for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) {
     if (count[i] > 0) mesh.vertices.col(i) = (mesh.vertices.col(i) + sum.col(i) / count[i]) / 2;
   }
+}
+
+// Draws vertices that are beyond the border of the middle surface near to it, in their order: what follows a triangle
+// from outside of it moves more than the triangle.
+void DrawToBorder(const Mesh& middle, Mesh& layers) {
+  constexpr double kBeyond = 1.5;  // at most [mm]
+  const Points normals = VertexNormals(middle.vertices, middle.triangles);
+  const TriangleTree tree(middle.vertices, middle.triangles);
+  TriangleTree::Boxes boxes;
+  tree.Fit(middle.vertices, boxes);
+  for (auto x : layers.vertices.colwise()) {
+    const SurfacePoint nearest = tree.Nearest(middle.vertices, boxes, x, std::numeric_limits<double>::infinity());
+    if (!nearest.on_boundary) continue;
+    const Eigen::Vector3d n = (normals(Eigen::all, tree.triangle(nearest.triangle)) * nearest.weights).normalized();
+    const Eigen::Vector3d from = -nearest.offset, aside = from - from.dot(n) * n;
+    const double beyond = aside.norm() / kMillimetre;
+    if (beyond > 1e-6) x -= (1 - kBeyond * (1 - std::exp(-beyond / kBeyond)) / beyond) * aside;
+  }
+}
+
+// Adds the whole rim to what is fixed to bone.
+void FixRim(Mesh& mesh) {
+  const std::vector<int>& rim = mesh.regions.at("rim");
+  std::vector<int>& fixed = mesh.regions["insertion"];
+  fixed.insert(fixed.end(), rim.begin(), rim.end());
+  std::ranges::sort(fixed);
+  fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
 }
 
 // Draws the mesh to the wall, each vertex towards its nearest point on it: onto it from outside and from 1 mm inside,
@@ -118,6 +144,7 @@ void DrawToWall(const Mesh& wall, Mesh& mesh) {
 
 Mesh FollowScan(const LabelVolume& volume, const Mask& scanned, const Mesh& wall, Mesh& middle) {
   constexpr int kRounds = 8;
+  FixRim(middle);
   const VoxelsOf part(volume, scanned);
   for (int round = 0; round < kRounds; ++round) {
     if (round > 0) Relax(middle);
@@ -148,6 +175,7 @@ void DrawLayers(const Mesh& before, const Mesh& after, const FittedCage& cage, M
   for (int axis = 0; axis < 3; ++axis) {
     scanned.vertices.row(axis) += Averaged(scanned.triangles, moves.row(axis).transpose(), all, kPasses).transpose();
   }
+  DrawToBorder(after, scanned);
 }
 
 }  // namespace phrenic::imaging
