@@ -1,4 +1,4 @@
-// `phrenic patient`: makes a breathing thorax from a label volume.
+// `phrenic patient`: makes a breathing thorax from a label volume or from surface files.
 #include "server/imaging/patient.h"
 
 #include <unistd.h>
@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/argument_kinds.h"
@@ -18,15 +19,18 @@
 #include "client/terminal/progress.h"
 #include "server/imaging/label_file.h"
 #include "server/imaging/label_map.h"
+#include "server/imaging/surfaces/surface_scene.h"
 #include "server/schema/id.h"
 #include "server/schema/places.h"
 #include "server/schema/schema.h"
+#include "server/session/meshes.h"
 
 namespace phrenic::client {
 namespace {
 
 struct PatientOptions {
   std::string volume, labels = "totalsegmentator";
+  std::string data;  // folder of the surface files
   std::string out, name = "patient";
   double edge_length = 4;  // [mm]
   int vertices = 20000;
@@ -113,8 +117,33 @@ int ServePatient(const PatientOptions& options) {
   return Fail(absl::NotFoundError(absl::StrCat("cannot start ", server, ": build phrenicd, or omit --serve")));
 }
 
+int PrintNext(const PatientOptions& options, const std::string& data) {
+  const std::string scene = SceneFile(options.out, options.name);
+  std::cerr << "wrote " << scene << "; next:\n"
+            << "  phrenic run " << scene << " --data " << data << "\n"
+            << "  phrenicd --data " << data << " --start " << options.name << "\n";
+  return kOk;
+}
+
+// Makes the scene of a person whose surfaces are files that another scene names.
+int MakeFromSurfaces(const PatientOptions& options) {
+  const absl::StatusOr<std::string> text = ReadWhole(options.volume, "the scene that names the surfaces");
+  if (!text.ok()) return Fail(text.status());
+  const absl::StatusOr<v1::Scene> surfaces = schema::ParseScene(options.volume, *text);
+  if (!surfaces.ok()) return Fail(surfaces.status());
+  const absl::StatusOr<v1::Scene> scene_template = ReadTemplate();
+  if (!scene_template.ok()) return Fail(scene_template.status());
+  const std::string& data = options.data.empty() ? options.out : options.data;
+  const auto made = imaging::MakeSurfaceScene(session::MakeMeshSource(data), *surfaces, *scene_template, options.name);
+  if (!made.ok()) return Fail(made.status());
+  if (absl::Status status = WriteScene(options.out, made->scene); !status.ok()) return Fail(status);
+  for (const std::string& fallback : made->fallbacks) std::cout << "fall-back: " << fallback << "\n";
+  return PrintNext(options, data);
+}
+
 int MakePatient(const Context& context, const PatientOptions& options) {
   if (absl::Status status = schema::CheckId("--name", options.name); !status.ok()) return Fail(status);
+  if (absl::EndsWith(options.volume, ".textproto")) return MakeFromSurfaces(options);
   const absl::StatusOr<imaging::Patient> patient = ReadAndMakePatient(options);
   if (!patient.ok()) return Fail(patient.status());
   const v1::Readiness& readiness = patient->report.readiness();
@@ -133,18 +162,20 @@ int MakePatient(const Context& context, const PatientOptions& options) {
                      ". The report lists every finding; --anyway writes the patient nevertheless")));
   }
   if (options.serve) return ServePatient(options);
-  std::cerr << "wrote " << SceneFile(options.out, options.name) << "; next:\n"
-            << "  phrenic run " << SceneFile(options.out, options.name) << " --data " << options.out << "\n"
-            << "  phrenicd --data " << options.out << " --start " << options.name << "\n";
-  return kOk;
+  return PrintNext(options, options.out);
 }
 
 }  // namespace
 
 CommandFunction SetUpPatient(CLI::App& command) {
   const auto options = std::make_shared<PatientOptions>();
-  command.add_option("VOLUME", options->volume, "labels as NIfTI (.nii, .nii.gz) or DICOM Segmentation")->required();
+  command
+      .add_option("VOLUME", options->volume,
+                  "labels as NIfTI (.nii, .nii.gz) or DICOM Segmentation, or a scene (.textproto) whose bodies are "
+                  "surface files")
+      ->required();
   AddLabels(command, options->labels);
+  command.add_option("--data", options->data, "folder of the scene's surface files; without it, that of --out");
   command.add_option("--out", options->out, "data folder for the surfaces and the scene")->required();
   command.add_option("--name", options->name, "name of the scene: 1 to 64 of a-z, 0-9 and -")->capture_default_str();
   command

@@ -28,12 +28,15 @@ std::string SceneFile(const std::string& folder, const std::string& name) {
   return absl::StrCat(folder, "/scenes/", name, ".textproto");
 }
 
+absl::Status WriteScene(const std::string& folder, const v1::Scene& scene) {
+  if (absl::Status status = MakeFolder(absl::StrCat(folder, "/scenes")); !status.ok()) return status;
+  return WriteWhole(SceneFile(folder, scene.name()), SceneText(scene));
+}
+
 absl::Status WritePatient(const std::string& folder, const imaging::Patient& patient) {
   const std::string& name = patient.scene.name();
   const std::string surfaces = absl::StrCat(folder, "/", name);
-  for (const std::string& needed : {surfaces, absl::StrCat(folder, "/scenes")}) {
-    if (absl::Status status = MakeFolder(needed); !status.ok()) return status;
-  }
+  if (absl::Status status = MakeFolder(surfaces); !status.ok()) return status;
   for (const imaging::PatientBody& body : patient.bodies) {
     const std::string file = absl::StrCat(surfaces, "/", body.name, ".msh");
     const absl::StatusOr<std::string> bytes = meshio::Write(file, body.mesh, kMillimetre);
@@ -42,7 +45,7 @@ absl::Status WritePatient(const std::string& folder, const imaging::Patient& pat
   }
   absl::Status status = WriteWhole(absl::StrCat(surfaces, "/report.json"), Json(patient.report) + "\n");
   if (!status.ok()) return status;
-  return WriteWhole(SceneFile(folder, name), SceneText(patient.scene));
+  return WriteScene(folder, patient.scene);
 }
 
 }  // namespace phrenic::client

@@ -144,6 +144,14 @@ Ray CageFrame::RayOf(const Eigen::Vector2d& p) const {
   return {centre, {across * azimuth.x(), across * azimuth.y(), std::cos(angle)}};
 }
 
+Eigen::Vector2d CageFrame::PlaneOf(const Eigen::Vector3d& point) const {
+  const Eigen::Vector3d from = point - centre;
+  const double across = from.head<2>().norm();
+  if (across < 1e-9) return {0, 0};
+  const double s = from.z() < 0 ? 1 - from.z() / wall_length : std::atan2(across, from.z()) / (std::numbers::pi / 2);
+  return s / across * from.head<2>();
+}
+
 Eigen::Vector2d CageFrame::Axis(double z) const {
   const double up = top > sternum_end ? std::clamp((z - sternum_end) / (top - sternum_end), 0.0, 1.0) : 0;
   return {centre.x(), centre.y() + up * (top_centre - centre.y())};

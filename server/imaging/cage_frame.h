@@ -34,6 +34,8 @@ struct CageFrame {
   double top_centre = 0;         // y midway between sternum and spine there
 
   Ray RayOf(const Eigen::Vector2d& p) const;
+  // Returns the plane point of the ray through a point.
+  Eigen::Vector2d PlaneOf(const Eigen::Vector3d& point) const;
   // Returns (x, y) of the axis of horizontal rays at a height: vertical up to the sternum's lower end, and from there
   // straight to `top_centre`, as the cage leans back.
   Eigen::Vector2d Axis(double z) const;

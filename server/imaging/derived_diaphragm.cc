@@ -152,7 +152,6 @@ v1::DerivedDiaphragm ReportOf(const Sheet& sheet, const SmoothSheet& smooth) {
   }
   const double all = area[0] + area[1] + area[2] + area[3] + area[4];
   v1::DerivedDiaphragm report;
-  report.set_vertices(static_cast<int>(2 * sheet.points.size()));
   report.set_area_cm2(all / 100);
   report.set_between_organs(area[static_cast<int>(Source::kBetween)] / all);
   report.set_beside_one_organ(area[static_cast<int>(Source::kBesideOne)] / all);
@@ -234,6 +233,18 @@ double EdgeLengthFor(int vertices, double area) {
   return std::sqrt(kOfLattice * area / (vertices / 2.0) * 2 / std::sqrt(3.0));
 }
 
+// Returns the double layer of this many vertices [m], with its regions.
+absl::StatusOr<Mesh> MeshLayers(anatomy::SheetDomain& domain, double area, const CageFrame& frame,
+                                const FittedCage& cage, const DiaphragmOptions& options) {
+  const double edges = EdgeLengthFor(options.vertices, area);
+  const auto seen = MeshWhole(domain, [edges](const Eigen::Vector3d&) { return edges; });
+  if (!seen.ok()) return seen.status();
+  Mesh mesh = anatomy::DoubleLayer(*seen, [&domain](const Eigen::Vector2d& p) { return NormalOf(domain, p); });
+  mesh.vertices *= kMillimetre;
+  AddRegions(RegionsOf(*seen, frame, cage, options.tendon_share), mesh);
+  return mesh;
+}
+
 }  // namespace
 
 absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, const std::vector<Part>& parts,
@@ -247,17 +258,17 @@ absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, cons
   domain.map = [&](const Eigen::Vector2d& p) { return cage.Inside(smooth.Point(p)); };
   const double area = AreaOf(domain);
   if (absl::Status status = CheckSize(smooth, domain.loops[0], area); !status.ok()) return status;
-  const double seen_edges = EdgeLengthFor(options.vertices, area);
-  const auto seen = MeshWhole(domain, [seen_edges](const Eigen::Vector3d&) { return seen_edges; });
-  if (!seen.ok()) return seen.status();
+  DerivedDiaphragm derived;
+  if (options.vertices > 0) {
+    absl::StatusOr<Mesh> layers = MeshLayers(domain, area, frame, cage, options);
+    if (!layers.ok()) return layers.status();
+    derived.mesh = *std::move(layers);
+  }
   const auto middle = MeshWhole(domain, MiddleEdges(frame, options.middle_edge_length));
   if (!middle.ok()) return middle.status();
-  DerivedDiaphragm derived;
-  derived.mesh = anatomy::DoubleLayer(*seen, [&domain](const Eigen::Vector2d& p) { return NormalOf(domain, p); });
-  derived.mesh.vertices *= kMillimetre;
-  AddRegions(RegionsOf(*seen, frame, cage, options.tendon_share), derived.mesh);
   derived.middle = MiddleLayer(*middle, RegionsOf(*middle, frame, cage, options.tendon_share));
-  derived.report = ReportOf(*seen, smooth);
+  derived.report = ReportOf(*middle, smooth);
+  derived.report.set_vertices(static_cast<int>(derived.mesh.vertices.cols()));
   return derived;
 }
 

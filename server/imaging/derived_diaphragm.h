@@ -9,7 +9,7 @@
 namespace phrenic::imaging {
 
 struct DiaphragmOptions {
-  int vertices = 20000;           // target, for both layers together
+  int vertices = 20000;           // target, for both layers together; 0: no double layer
   double tendon_share = 0.17;     // of the sheet's area, as of the generated one; 0.15 to 0.25 in humans
   double middle_edge_length = 5;  // [mm]; finer over the spine and in the crura
 };

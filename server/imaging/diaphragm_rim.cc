@@ -21,17 +21,28 @@ struct Knot {
   double degrees, z;  // azimuth from the front, positive to the left; height [mm]
 };
 
-// Returns the height of the lowest point of ribs 7 to 12 and cartilages in each direction; infinity if there is none.
+// True for what the margin of the sheet follows: the diaphragm's own label, else ribs 7 to 12 and cartilages.
+bool IsMargin(const Part& part, bool labelled) {
+  if (labelled) return part.Is(v1::STRUCTURE_DIAPHRAGM);
+  const bool rib = part.Is(v1::STRUCTURE_RIB) && part.anatomy.number() >= 7;
+  return rib || part.Is(v1::STRUCTURE_COSTAL_CARTILAGE);
+}
+
+// Returns the height of the lowest point of the margin in each direction; infinity if there is none. Bones are apart,
+// so all within a direction count; of the labelled diaphragm, whose margin is steep, those within 1.5 degrees.
 std::vector<double> CostalMargin(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame) {
+  constexpr double kNarrow = 1.5;  // [degrees]
+  const bool labelled = std::ranges::any_of(parts, [](const Part& part) { return part.Is(v1::STRUCTURE_DIAPHRAGM); });
   std::vector<double> lowest(kDirections, kUnknown);
   for (const Part& part : parts) {
-    const bool rib = part.Is(v1::STRUCTURE_RIB) && part.anatomy.number() >= 7;
-    if (!rib && !part.Is(v1::STRUCTURE_COSTAL_CARTILAGE)) continue;
+    if (!IsMargin(part, labelled)) continue;
     for (std::size_t at = 0; at < part.mask.inside.size(); ++at) {
       if (part.mask.inside[at] != 1) continue;
       const Eigen::Vector3d position = part.mask.Position(volume, at), from = position - frame.centre;
       const double degrees = std::atan2(from.x(), -from.y()) / kDegree;
-      const auto direction = (std::lround(degrees / kKnotSpacing) + kDirections) % kDirections;
+      const auto nearest = std::lround(degrees / kKnotSpacing);
+      if (labelled && std::abs(degrees - static_cast<double>(kKnotSpacing * nearest)) > kNarrow) continue;
+      const auto direction = (nearest + kDirections) % kDirections;
       lowest[direction] = std::min(lowest[direction], position.z());
     }
   }
@@ -55,11 +66,38 @@ std::vector<Knot> CostalKnots(const std::vector<double>& lowest, const CageFrame
   return known;
 }
 
+// Where the rim turns from the costal margin into a crus.
+struct CrusEnds {
+  double lateral, tip;  // heights of its lateral edge and of its tip [mm]
+};
+
+constexpr double kLateral = 28;  // of the lateral edge, from the back [degrees]
+
+// Returns those of the labelled diaphragm if it reaches below L1 there, else the usual ones.
+CrusEnds FindCrusEnds(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,
+                      v1::Side side) {
+  constexpr double kBeside = 1.5;  // [degrees]
+  const double l1 = frame.lumbar[0], h = frame.vertebra_height, sign = side == v1::SIDE_LEFT ? 1 : -1;
+  CrusEnds lowest{kUnknown, l1};
+  for (const Part& part : parts) {
+    if (!part.Is(v1::STRUCTURE_DIAPHRAGM)) continue;
+    for (std::size_t at = 0; at < part.mask.inside.size(); ++at) {
+      if (part.mask.inside[at] != 1) continue;
+      const Eigen::Vector3d position = part.mask.Position(volume, at), from = position - frame.centre;
+      const double degrees = std::atan2(sign * from.x(), from.y()) / kDegree;  // from the back
+      if (std::abs(degrees - kLateral) < kBeside) lowest.lateral = std::min(lowest.lateral, position.z());
+      if (InCrus(frame, position, side)) lowest.tip = std::min(lowest.tip, position.z());
+    }
+  }
+  if (lowest.lateral == kUnknown) lowest.lateral = l1 + 0.3 * h;
+  if (lowest.tip >= l1) lowest.tip = side == v1::SIDE_RIGHT ? frame.lumbar[2] : frame.lumbar[1] - 0.2 * h;
+  return lowest;
+}
+
 // Returns the crus from its lateral edge around the tip to the median arcuate ligament, in degrees from the back.
-std::vector<Knot> CrusKnots(const CageFrame& frame, v1::Side side) {
-  const double l1 = frame.lumbar[0], h = frame.vertebra_height;
-  const double tip = side == v1::SIDE_RIGHT ? frame.lumbar[2] : frame.lumbar[1] - 0.2 * h;
-  return {{28, l1 + 0.3 * h},
+std::vector<Knot> CrusKnots(const CageFrame& frame, const CrusEnds& ends) {
+  const double l1 = frame.lumbar[0], h = frame.vertebra_height, tip = ends.tip;
+  return {{kLateral, ends.lateral},
           {20, l1 + 0.2 * h},
           {15, l1 - 0.4 * h},
           {12, (l1 + tip) / 2 - 0.3 * h},
@@ -70,13 +108,14 @@ std::vector<Knot> CrusKnots(const CageFrame& frame, v1::Side side) {
 }
 
 // Returns the knots of the whole rim from the front, counter-clockwise seen from above: left side first.
-std::vector<Knot> Knots(const std::vector<double>& lowest, const CageFrame& frame, Messages& fallbacks) {
+std::vector<Knot> Knots(const std::vector<double>& lowest, const CrusEnds& left_crus, const CrusEnds& right_crus,
+                        const CageFrame& frame, Messages& fallbacks) {
   int bridged = 0;
   std::vector<Knot> knots = CostalKnots(lowest, frame, 1, &bridged);
-  for (const Knot& knot : CrusKnots(frame, v1::SIDE_LEFT)) knots.push_back({180 - knot.degrees, knot.z});
+  for (const Knot& knot : CrusKnots(frame, left_crus)) knots.push_back({180 - knot.degrees, knot.z});
   knots.push_back({180, frame.lumbar[0] + 1.3 * frame.vertebra_height});
   std::vector<Knot> right = CostalKnots(lowest, frame, -1, &bridged);
-  for (const Knot& knot : CrusKnots(frame, v1::SIDE_RIGHT)) right.push_back({knot.degrees - 180, knot.z});
+  for (const Knot& knot : CrusKnots(frame, right_crus)) right.push_back({knot.degrees - 180, knot.z});
   for (auto knot = right.rbegin(); knot != right.rend(); ++knot) knots.push_back({knot->degrees + 360, knot->z});
   if (bridged > 0) {
     fallbacks.push_back(
@@ -106,7 +145,9 @@ Knot Spline(const std::vector<Knot>& knots, std::size_t span, double t) {
 anatomy::PlaneLoop FindRim(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,
                            const SmoothSheet& sheet, Messages& fallbacks) {
   constexpr int kSamplesASpan = 12;
-  const std::vector<Knot> knots = Knots(CostalMargin(volume, parts, frame), frame, fallbacks);
+  const CrusEnds left = FindCrusEnds(volume, parts, frame, v1::SIDE_LEFT);
+  const CrusEnds right = FindCrusEnds(volume, parts, frame, v1::SIDE_RIGHT);
+  const std::vector<Knot> knots = Knots(CostalMargin(volume, parts, frame), left, right, frame, fallbacks);
   anatomy::PlaneLoop rim;
   for (std::size_t span = 0; span < knots.size(); ++span) {
     for (int i = 0; i < kSamplesASpan; ++i) {

@@ -10,7 +10,8 @@ namespace phrenic::imaging {
 // Returns the rim as a closed, densely sampled loop in the frame's plane, counter-clockwise seen from above. It starts
 // at the sternum's lower end, follows the lowest cartilage or rib (7 to 12) of each direction, and continues over the
 // arcuate ligaments at L1 into the crura, the right one to L3, the left one to L2, with T12 between (anatomy from the
-// project's physiology notes). Interpolates over gaps between ribs and cartilages and adds a message to `fallbacks`.
+// project's physiology notes). If the diaphragm itself is labelled, the rim follows its lowest points instead, and its
+// crura. Interpolates over gaps between ribs and cartilages and adds a message to `fallbacks`.
 anatomy::PlaneLoop FindRim(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,
                            const SmoothSheet& sheet, Messages& fallbacks);
 

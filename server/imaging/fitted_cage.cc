@@ -19,6 +19,8 @@ constexpr double kNarrowest = 8;                    // [mm]
 constexpr double kStiffness = 1, kUpright = 0.02;   // bending and tension, relative to a weight of 1 a ray
 constexpr double kNearer = 10;                      // weight of a bone that is nearer to the axis than the wall
 constexpr double kFurtherOut = 0.3;                 // weight of a bone that is further out than the wall
+constexpr double kTouching = 3;                     // weight of a diaphragm on the wall that is further out than it
+constexpr double kApposed = 15;                     // furthest diaphragm from the bones' wall that lies on it [mm]
 constexpr double kOntoWall = 1, kFreeFromWall = 5;  // distances from the wall [mm]
 constexpr double kFullTurn = 2 * std::numbers::pi;
 
@@ -27,81 +29,134 @@ bool IsBone(const Part& part) {
          part.Is(v1::STRUCTURE_STERNUM_BODY) || part.Is(v1::STRUCTURE_MANUBRIUM) || part.Is(v1::STRUCTURE_XIPHOID);
 }
 
-// Returns 1 for each voxel of bone.
-std::vector<std::uint8_t> FindBone(const LabelVolume& volume, const std::vector<Part>& parts) {
-  std::vector<std::uint8_t> bone(volume.labels.size(), 0);
-  for (const Part& part : parts) {
-    if (!IsBone(part)) continue;
-    const Mask& mask = part.mask;
-    for (std::size_t at = 0; at < mask.inside.size(); ++at) {
-      const auto row = static_cast<int>(at / mask.size.x());
-      const Eigen::Vector3i voxel =
-          mask.low + Eigen::Vector3i(static_cast<int>(at % mask.size.x()), row % mask.size.y(), row / mask.size.y());
-      if (mask.inside[at] == 1 && volume.Contains(voxel)) bone[volume.Index(voxel)] = 1;
-    }
-  }
-  return bone;
+enum Found : std::uint8_t { kNeither, kBone, kSheet, kLung };
+
+Found FoundOf(const Part& part) {
+  if (IsBone(part)) return kBone;
+  if (part.Is(v1::STRUCTURE_DIAPHRAGM)) return kSheet;
+  return part.Is(v1::STRUCTURE_LUNG) ? kLung : kNeither;
 }
 
-// Returns the distance of the first voxel of bone on each ray of the grid; infinity if a ray meets no bone.
-Eigen::VectorXd DistancesOfBone(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,
-                                const PlateGrid& grid, double bottom) {
-  const std::vector<std::uint8_t> bone = FindBone(volume, parts);
-  const Eigen::Affine3d to_voxel = volume.to_patient.inverse();
+// Returns what is found in each voxel. Of parts that overlap, bone and then the diaphragm win.
+std::vector<Found> FindInVoxels(const LabelVolume& volume, const std::vector<Part>& parts) {
+  std::vector<Found> found(volume.labels.size(), kNeither);
+  for (const Found kind : {kLung, kSheet, kBone}) {
+    for (const Part& part : parts) {
+      if (FoundOf(part) != kind) continue;
+      const Mask& mask = part.mask;
+      for (std::size_t at = 0; at < mask.inside.size(); ++at) {
+        const auto row = static_cast<int>(at / mask.size.x());
+        const Eigen::Vector3i voxel =
+            mask.low + Eigen::Vector3i(static_cast<int>(at % mask.size.x()), row % mask.size.y(), row / mask.size.y());
+        if (mask.inside[at] == 1 && volume.Contains(voxel)) found[volume.Index(voxel)] = kind;
+      }
+    }
+  }
+  return found;
+}
+
+// Distances on a ray from the axis [mm]; infinity for what it does not meet.
+struct Met {
+  double bone = HUGE_VAL;               // of the first voxel
+  double sheet = HUGE_VAL;              // of the middle of the labelled diaphragm, before any bone
+  double lung_beyond_sheet = HUGE_VAL;  // of the first voxel of lung outside of that
+};
+
+// Follows a ray outwards to the first bone.
+Met Follow(const LabelVolume& volume, const std::vector<Found>& found, const Eigen::Affine3d& to_voxel,
+           const Ray& ray) {
   const double step = std::max(volume.Spacing().minCoeff() / 3, kShortestStep);
-  Eigen::VectorXd distances = Eigen::VectorXd::Constant(grid.nodes(), HUGE_VAL);
+  Met met;
+  double entered = -1;
+  for (double depth = step; depth < kFurthestBone; depth += step) {
+    const Eigen::Vector3i voxel = (to_voxel * ray.At(depth)).array().round().cast<int>();
+    const Found here = volume.Contains(voxel) ? found[volume.Index(voxel)] : kNeither;
+    if (here == kSheet && entered < 0) entered = depth;
+    if (here != kSheet && entered >= 0 && std::isinf(met.sheet)) met.sheet = (entered + depth - step) / 2;
+    if (here == kLung && std::isfinite(met.sheet)) met.lung_beyond_sheet = std::min(met.lung_beyond_sheet, depth);
+    if (here == kBone) {
+      met.bone = depth;
+      break;
+    }
+  }
+  return met;
+}
+
+// Returns what each ray of the grid meets.
+std::vector<Met> FollowRays(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,
+                            const PlateGrid& grid, double bottom) {
+  const std::vector<Found> found = FindInVoxels(volume, parts);
+  const Eigen::Affine3d to_voxel = volume.to_patient.inverse();
+  std::vector<Met> rays;
   for (int node = 0; node < grid.nodes(); ++node) {
     const int row = node / grid.columns;
     const double z = bottom + kRowHeight * row, azimuth = kFullTurn * (node % grid.columns) / kColumns;
     const Eigen::Vector2d axis = frame.Axis(z);
-    const Ray ray{{axis.x(), axis.y(), z}, {std::sin(azimuth), -std::cos(azimuth), 0}};
-    for (double depth = step; depth < kFurthestBone; depth += step) {
-      const Eigen::Vector3i voxel = (to_voxel * ray.At(depth)).array().round().cast<int>();
-      if (!volume.Contains(voxel) || bone[volume.Index(voxel)] == 0) continue;
-      distances[node] = depth;
-      break;
-    }
+    rays.push_back(
+        Follow(volume, found, to_voxel, {{axis.x(), axis.y(), z}, {std::sin(azimuth), -std::cos(azimuth), 0}}));
   }
-  return distances;
+  return rays;
 }
 
-// Fits R to the distances of bones, from inside.
-Eigen::VectorXd FitRadius(const PlateGrid& grid, const Eigen::VectorXd& bones) {
+// What the wall is fitted to: a distance for each node, infinity if none; `touches` if the wall is there, not outside.
+struct WallEvidence {
+  Eigen::VectorXd distance;
+  std::vector<bool> touches;
+};
+
+WallEvidence BonesOf(const std::vector<Met>& rays) {
+  WallEvidence evidence{Eigen::VectorXd(static_cast<Eigen::Index>(rays.size())), std::vector<bool>(rays.size(), false)};
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    evidence.distance[static_cast<Eigen::Index>(i)] = rays[i].bone - kOffCage;
+  return evidence;
+}
+
+// Fits R to the evidence, from inside.
+Eigen::VectorXd FitRadius(const PlateGrid& grid, const WallEvidence& evidence) {
   constexpr int kRounds = 10;
   ThinPlate plate(grid, kStiffness, kUpright);
   Eigen::VectorXd weights(grid.nodes()), observed(grid.nodes()), radius;
   for (int i = 0; i < grid.nodes(); ++i) {
-    weights[i] = std::isfinite(bones[i]) ? 1 : 0;
-    observed[i] = std::isfinite(bones[i]) ? bones[i] - kOffCage : 0;
+    weights[i] = std::isfinite(evidence.distance[i]) ? 1 : 0;
+    observed[i] = std::isfinite(evidence.distance[i]) ? evidence.distance[i] : 0;
   }
   for (int round = 0; round < kRounds; ++round) {
     radius = plate.Fit(weights, observed);
     for (int i = 0; i < grid.nodes(); ++i) {
-      if (std::isfinite(bones[i])) weights[i] = radius[i] > observed[i] ? kNearer : kFurtherOut;
+      if (weights[i] == 0) continue;
+      const double inside = evidence.touches[i] ? kTouching : kFurtherOut;
+      weights[i] = radius[i] > observed[i] ? kNearer : inside;
     }
   }
   return radius.cwiseMax(kNarrowest);
 }
 
-void ReportFit(const Eigen::VectorXd& bones, const Eigen::VectorXd& radius, Messages& fallbacks) {
+// Adds the diaphragm where it lies on the wall: near its first fit, with no lung between, and not outside of it, where
+// ribs may pierce it. Returns the number of nodes.
+int AddApposed(const std::vector<Met>& rays, const Eigen::VectorXd& radius, WallEvidence& evidence) {
+  int apposed = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto node = static_cast<Eigen::Index>(i);
+    const bool near_wall = rays[i].sheet > radius[node] - kApposed && rays[i].sheet < evidence.distance[node];
+    if (!std::isfinite(rays[i].sheet) || !near_wall || rays[i].lung_beyond_sheet < radius[node]) continue;
+    evidence.distance[node] = std::min(rays[i].sheet, radius[node]);
+    evidence.touches[i] = true;
+    ++apposed;
+  }
+  return apposed;
+}
+
+void ReportFit(const std::vector<Met>& rays, const Eigen::VectorXd& radius, Messages& fallbacks) {
   std::vector<double> distances;
-  for (Eigen::Index i = 0; i < bones.size(); ++i) {
-    if (std::isfinite(bones[i])) distances.push_back(bones[i] - radius[i]);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (std::isfinite(rays[i].bone)) distances.push_back(rays[i].bone - radius[static_cast<Eigen::Index>(i)]);
   }
   if (distances.empty()) return;
   std::sort(distances.begin(), distances.end());
   fallbacks.push_back(absl::StrFormat(
       "chest wall: no bone in %.0f %% of the directions, bridged; bones are %.1f mm from it at least, %.1f in 95 %%",
-      100 - 100.0 * static_cast<double>(distances.size()) / static_cast<double>(bones.size()), distances.front(),
+      100 - 100.0 * static_cast<double>(distances.size()) / static_cast<double>(rays.size()), distances.front(),
       distances[distances.size() / 20]));
-}
-
-// Returns the gap of a point after it was drawn onto the wall; monotone and smooth.
-double DrawnGap(double gap) {
-  if (gap > -kOntoWall) return 0;
-  if (gap < -kFreeFromWall) return gap;
-  const double t = (-gap - kOntoWall) / (kFreeFromWall - kOntoWall);
-  return gap * t * t * (3 - 2 * t);
 }
 
 }  // namespace
@@ -110,9 +165,11 @@ FittedCage::FittedCage(const LabelVolume& volume, const std::vector<Part>& parts
                        Messages& fallbacks)
     : frame_(frame), bottom_(frame.lumbar[2] - frame.vertebra_height / 2) {
   grid_ = {kColumns, 1 + std::max(8, static_cast<int>(std::ceil((frame.top - bottom_) / kRowHeight))), true};
-  const Eigen::VectorXd bones = DistancesOfBone(volume, parts, frame, grid_, bottom_);
-  radius_ = FitRadius(grid_, bones);
-  ReportFit(bones, radius_, fallbacks);
+  const std::vector<Met> rays = FollowRays(volume, parts, frame, grid_, bottom_);
+  WallEvidence evidence = BonesOf(rays);
+  radius_ = FitRadius(grid_, evidence);
+  if (AddApposed(rays, radius_, evidence) > 0) radius_ = FitRadius(grid_, evidence);
+  ReportFit(rays, radius_, fallbacks);
 }
 
 double FittedCage::Radius(double azimuth, double z) const {
@@ -143,6 +200,22 @@ Eigen::Vector3d FittedCage::Inside(const Eigen::Vector3d& point) const {
   const double radius = wall + DrawnGap(polar.radius - wall);
   const Eigen::Vector2d moved = polar.axis + radius / polar.radius * (point.head<2>() - polar.axis);
   return {moved.x(), moved.y(), point.z()};
+}
+
+Eigen::Vector3d FittedCage::Within(const Eigen::Vector3d& point, double outside) const {
+  const Polar polar = PolarOf(point);
+  const double wall = Radius(polar.azimuth, point.z()), gap = polar.radius - wall;
+  if (gap <= 0) return point;
+  const double radius = wall + outside * (1 - std::exp(-gap / outside));
+  const Eigen::Vector2d moved = polar.axis + radius / polar.radius * (point.head<2>() - polar.axis);
+  return {moved.x(), moved.y(), point.z()};
+}
+
+double FittedCage::DrawnGap(double gap) {
+  if (gap > -kOntoWall) return 0;
+  if (gap < -kFreeFromWall) return gap;
+  const double t = (-gap - kOntoWall) / (kFreeFromWall - kOntoWall);
+  return gap * t * t * (3 - 2 * t);
 }
 
 Eigen::Vector2d FittedCage::DiscCoordinates(const Eigen::Vector3d& point) const {

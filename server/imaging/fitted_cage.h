@@ -13,7 +13,9 @@ namespace phrenic::imaging {
 // on a grid of 144 azimuths and heights 4 mm apart. Horizontal rays find the first voxel of rib, cartilage, sternum or
 // vertebra; R is the thin plate that stays 3.5 mm inside of them: in ten rounds of reweighting, a bone that is nearer
 // to the axis than the plate has 33 times the weight of one further out, so that R passes under the ribs and bridges
-// the spaces between them. Lengths in millimetres, frame LPS. Immutable, thread-safe.
+// the spaces between them. If the diaphragm is labelled, a second fit adds its middle where it is at most 15 mm inside
+// of the first one, with no lung between: there it lies on the wall. Lengths in millimetres, frame LPS. Immutable,
+// thread-safe.
 class FittedCage {
  public:
   // Adds a message to `fallbacks` with the share of directions without a bone, and how near to the wall bones are.
@@ -25,6 +27,11 @@ class FittedCage {
   // Returns the point moved along its radius: onto the wall if it is outside of it or at most 1 mm inside, and by ever
   // less further in, up to 5 mm. Elsewhere the point itself.
   Eigen::Vector3d Inside(const Eigen::Vector3d& point) const;
+  // Returns how far outside of the wall Inside moves a point, by how far it was [mm]; both are negative inside.
+  static double DrawnGap(double gap);
+  // Returns the point, moved along its radius if it is outside of the wall: by ever less than `outside` [mm], so that
+  // points keep their order.
+  Eigen::Vector3d Within(const Eigen::Vector3d& point, double outside) const;
   // Returns the disc coordinates of a point, as anatomy::CageSection: x and y within the width and the depth of the
   // wall at its height, from -1 to 1.
   Eigen::Vector2d DiscCoordinates(const Eigen::Vector3d& point) const;

@@ -106,15 +106,27 @@ void AddRib(const PatientBody& rib, const v1::Ribs& pattern, double scale, v1::S
   }
 }
 
-void AddCartilages(const std::set<std::string>& layers, v1::Scene& scene) {
-  if (!layers.contains("cartilages")) return;
-  v1::Skin& skin = *scene.add_motions()->mutable_skin();
-  skin.add_bodies("cartilages");
-  skin.add_drivers("ribs");
-  if (layers.contains("sternum")) skin.add_drivers("sternum");
+// True if a motion moves the body by its own name.
+bool IsMoved(const v1::Scene& scene, const std::string& body) {
+  return std::ranges::any_of(scene.motions(), [&](const v1::Motion& motion) {
+    return motion.has_skin() && std::ranges::find(motion.skin().bodies(), body) != motion.skin().bodies().end();
+  });
 }
 
-// Adds a motion of the pattern. Cartilages, of which the patient may have others, are skinned by AddCartilages.
+// Skins the cartilages that the pattern does not know by name.
+void AddCartilages(const std::vector<PatientBody>& bodies, const std::set<std::string>& layers, v1::Scene& scene) {
+  v1::Skin skin;
+  for (const PatientBody& body : bodies) {
+    const bool cartilage = body.anatomy.structure() == v1::STRUCTURE_COSTAL_CARTILAGE;
+    if (cartilage && !IsMoved(scene, body.name)) skin.add_bodies(body.name);
+  }
+  if (skin.bodies().empty()) return;
+  skin.add_drivers("ribs");
+  if (layers.contains("sternum")) skin.add_drivers("sternum");
+  *scene.add_motions()->mutable_skin() = skin;
+}
+
+// Adds a motion of the pattern, unless the patient lacks what it moves.
 void AddMotion(const v1::Motion& motion, const std::set<std::string>& known, v1::Scene& scene) {
   if (motion.has_for_each()) return;
   if (motion.has_sternum() && !known.contains("sternum")) return;
@@ -132,13 +144,13 @@ void AddMotions(const v1::Scene& pattern, const std::vector<PatientBody>& bodies
   for (const v1::Motion& motion : pattern.motions()) {
     if (!motion.has_ribs()) {
       AddMotion(motion, known, scene);
-      if (motion.has_sternum()) AddCartilages(known, scene);
       continue;
     }
     for (const PatientBody& body : bodies) {
       if (body.anatomy.structure() == v1::STRUCTURE_RIB) AddRib(body, motion.ribs(), ScaleOf(frame), scene);
     }
   }
+  AddCartilages(bodies, known, scene);
   for (v1::Motion& motion : *scene.mutable_motions()) {
     if (!motion.has_insertion()) continue;
     motion.mutable_insertion()->mutable_apex()->set_x(0);

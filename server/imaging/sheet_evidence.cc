@@ -37,10 +37,15 @@ double CeilingOf(const Part& part, const CageFrame& frame) {
   return in_front ? frame.sternum_end + kInsertion : std::numeric_limits<double>::infinity();
 }
 
-// Returns the tissue of each voxel of the volume.
+// Returns the tissue of each voxel of the volume. The diaphragm's own label wins over what it overlaps but bone.
 std::vector<Tissue> ClassifyVoxels(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame) {
   std::vector<Tissue> tissues(volume.labels.size(), kNothing);
-  for (const Part& part : parts) {
+  const auto rank = [](const Part* part) { return TissueOf(*part) == kBone ? 2 : TissueOf(*part) == kSheet ? 1 : 0; };
+  std::vector<const Part*> ordered;
+  for (const Part& part : parts) ordered.push_back(&part);
+  std::ranges::stable_sort(ordered, {}, rank);
+  for (const Part* each : ordered) {
+    const Part& part = *each;
     const Tissue tissue = TissueOf(part);
     const Mask& mask = part.mask;
     const double ceiling = CeilingOf(part, frame);
@@ -96,6 +101,7 @@ SheetEvidence CollectEvidence(const LabelVolume& volume, const std::vector<Part>
                               const FittedCage& cage) {
   const std::vector<Tissue> tissues = ClassifyVoxels(volume, parts, frame);
   const Eigen::Affine3d to_voxel = volume.to_patient.inverse();
+  const bool labelled = std::ranges::find(tissues, kSheet) != tissues.end();
   SheetEvidence evidence;
   evidence.count = kRays;
   evidence.source.assign(kRays * kRays, Source::kNone);
@@ -106,6 +112,7 @@ SheetEvidence CollectEvidence(const LabelVolume& volume, const std::vector<Part>
       if (p.norm() > kPlaneReach) continue;
       const Ray ray = frame.RayOf(p);
       Observation observation = CastRay(volume, tissues, to_voxel, ray);
+      if (labelled && observation.source != Source::kLabel) observation = {};  // through an opening
       if (p.norm() > 1) observation = OnWall(observation, ray, cage);
       evidence.source[evidence.Index(i, j)] = observation.source;
       evidence.depth[evidence.Index(i, j)] = observation.depth;

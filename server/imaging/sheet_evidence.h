@@ -30,6 +30,7 @@ struct SheetEvidence {
 //   kBesideOne: 3.5 mm below a lung or the heart with no organ near below it;
 //   kOnBone:    on the wall, if the ray is horizontal; else 4 mm inside a bone's inner face;
 //   kOnWall:    on the wall, where a horizontal ray meets nothing.
+// If the diaphragm has a label, a ray that does not meet it passes through an opening and counts as meeting nothing.
 // Of the vertebrae only T11 and below count, of sternum and cartilages only the part near the sternum's lower end;
 // above, the mediastinum lies between.
 SheetEvidence CollectEvidence(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,

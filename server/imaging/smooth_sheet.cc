@@ -9,8 +9,13 @@
 namespace phrenic::imaging {
 namespace {
 
-constexpr double kBending = 4;  // b, relative to a weight of 1 per ray
-constexpr double kOff = 6;      // scale of the robust weight [mm]
+// b, relative to a weight of 1 per ray, and the scale of the robust weight [mm].
+struct Smoothing {
+  double bending, off;
+};
+constexpr Smoothing kUsual = {4, 6};
+constexpr Smoothing kLabelled = {0.3, 30};  // rays are certain, and meet the sheet beside the spine at small angles
+
 constexpr double kAgrees = 8;   // maximum residual of evidence that SourceAt reports [mm]
 constexpr double kNearby = 10;  // maximum distance of evidence that SourceAt reports [mm]
 
@@ -20,14 +25,16 @@ double Square(double x) { return x * x; }
 Eigen::VectorXd FitDepths(const SheetEvidence& evidence) {
   constexpr int kRounds = 4;
   const int n = evidence.count * evidence.count;
-  ThinPlate plate({evidence.count, evidence.count}, kBending);
+  const bool labelled = std::ranges::find(evidence.source, Source::kLabel) != evidence.source.end();
+  const Smoothing smoothing = labelled ? kLabelled : kUsual;
+  ThinPlate plate({evidence.count, evidence.count}, smoothing.bending);
   const Eigen::Map<const Eigen::VectorXd> observed(evidence.depth.data(), n);
   Eigen::VectorXd weights(n), depth;
   for (int i = 0; i < n; ++i) weights[i] = evidence.source[i] == Source::kNone ? 0 : 1;
   for (int round = 0; round < kRounds; ++round) {
     depth = plate.Fit(weights, observed);
     for (int i = 0; i < n; ++i) {
-      if (evidence.source[i] != Source::kNone) weights[i] = 1 / (1 + Square((depth[i] - observed[i]) / kOff));
+      if (evidence.source[i] != Source::kNone) weights[i] = 1 / (1 + Square((depth[i] - observed[i]) / smoothing.off));
     }
   }
   return depth;

@@ -16,6 +16,7 @@ namespace {
 // Of the most verbose format (STL as text, two triangles of 250 bytes a vertex), so that no file that is within the
 // limits is refused before it is read.
 constexpr std::int64_t kFileBytesPerVertex = 500;
+constexpr std::int64_t kDerivedVertices = 15'000;  // about those of an inner cage; a middle surface has fewer
 
 // The size of a closed surface.
 MeshSize Surface(std::int64_t vertices) { return {vertices, 3 * vertices, 2 * vertices, 0}; }
@@ -58,6 +59,7 @@ bool IsUpload(const std::string& path) { return absl::StartsWith(path, std::stri
 
 const v1::SurfaceFile* FileOf(const v1::Body& body) {
   if (body.has_file()) return &body.file();
+  if (body.has_derived() && body.derived().has_file()) return &body.derived().file();
   return body.has_filling() && body.filling().has_file() ? &body.filling().file() : nullptr;
 }
 
@@ -84,11 +86,13 @@ SizeSource MakeSizeSource(std::string data_dir, const std::vector<Uploads::Held>
       return Surface(
           anatomy::EstimateVertices(body.anatomy(), body.generated().resolution_mm(), body.generated().sheet()));
     }
-    if (const auto found = sizes.find(body.file().path()); found != sizes.end()) {
+    const v1::SurfaceFile* file = FileOf(body);
+    if (file == nullptr) return body.has_derived() ? Surface(kDerivedVertices) : MeshSize{};
+    if (const auto found = sizes.find(file->path()); found != sizes.end()) {
       return Surface(found->second / kFileBytesPerVertex);
     }
     std::error_code error;
-    const absl::StatusOr<std::string> path = ResolveBelow(data_dir, body.file().path());
+    const absl::StatusOr<std::string> path = ResolveBelow(data_dir, file->path());
     const std::uintmax_t bytes = path.ok() ? std::filesystem::file_size(*path, error) : 0;
     return error ? MeshSize{} : Surface(static_cast<std::int64_t>(bytes) / kFileBytesPerVertex);
   };

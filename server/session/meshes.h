@@ -17,7 +17,7 @@ namespace phrenic::session {
 // INVALID_ARGUMENT also for a folder. Thread-safe; the file may change afterwards.
 absl::StatusOr<std::string> ResolveBelow(const std::string& data_dir, const std::string& path);
 
-// Returns the surface file of a body, also of one that fills it; null if the body has none. It belongs to `body`.
+// Returns the surface file of a body, also of one that fills it or is derived from it; null if the body has none. It belongs to `body`.
 const v1::SurfaceFile* FileOf(const v1::Body& body);
 // True for a path "upload:SHA256".
 bool IsUpload(const std::string& path);

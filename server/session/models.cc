@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "google/protobuf/io/coded_stream.h"
 #include "google/protobuf/io/zero_copy_stream_impl_lite.h"
+#include "server/imaging/surfaces/derived_bodies.h"
 #include "server/mechanics/compile/shape_size.h"
 #include "server/mechanics/stop_check.h"
 #include "server/schema/schema.h"
@@ -140,14 +141,15 @@ absl::StatusOr<std::shared_ptr<const Model>> Models::CompileNow(const v1::Scene&
   const auto size = EstimateSize(scene, options.size_of, options.limits);
   if (!size.ok()) return size.status();
   job.elements = size->elements;
-  if (by.trusted) return phrenic::Compile(scene, MakeMeshSource(data_dir_, surfaces, cache_), options);
+  const MeshSource meshes = imaging::WithDerived(MakeMeshSource(data_dir_, surfaces, cache_), scene);
+  if (by.trusted) return phrenic::Compile(scene, meshes, options);
   options.longest = limits_.compile_seconds;
   options.cancelled = [&by, &job] { return job.others == 0 && IsCancelled(by); };
   const bool small = size->vertices <= kSmallScene && size->elements <= kSmallScene;
   const auto lane = small ? CompileSlots::Lane::kSmall : CompileSlots::Lane::kLarge;
   const auto slot = slots_.Take(by.share, lane, options.cancelled);
   if (!slot.ok()) return slot.status();
-  return phrenic::Compile(scene, MakeMeshSource(data_dir_, surfaces, cache_), options);
+  return phrenic::Compile(scene, meshes, options);
 }
 
 absl::StatusOr<std::shared_ptr<const Model>> Models::Find(const v1::Scene& scene, const Surfaces& surfaces,

@@ -386,7 +386,7 @@ TEST(ThesisTables, AreThoseOfTheCorrespondingModel) {
   EXPECT_EQ(LikeThesisFigure(thorax, 16000, ThesisTrial::kNoMuscles)->steps_per_second, 10.93);
   EXPECT_EQ(LikeThesisFigure(thorax, 20900, ThesisTrial::kNoRibs)->steps_per_second, 9.68);
   EXPECT_NEAR(LikeThesisFigure(thorax, 20900, ThesisTrial::kNoAttachments)->steps_per_second, 100 / 12.2994, 1e-9);
-  EXPECT_THAT(LikeThesisFigure(SceneFile("thorax-patient"), 20740, ThesisTrial::kFull)->what,
+  EXPECT_THAT(LikeThesisFigure(SceneFile("thorax-patient-thesis"), 20740, ThesisTrial::kFull)->what,
               StartsWith("fig. 5.24, patient model, high"));
   EXPECT_NEAR(LikeThesisFigure(cube, 8, ThesisTrial::kNoLinks)->steps_per_second, 29895.4, 0.1);
   EXPECT_FALSE(LikeThesisFigure(cube, 8, ThesisTrial::kNoRibs).has_value());

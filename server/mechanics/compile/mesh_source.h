@@ -10,7 +10,7 @@
 
 namespace phrenic {
 
-// Returns the mesh of a body with a file or a generated part. Errors name the body.
+// Returns the mesh of a body with a file, a generated part or a derived surface. Errors name the body.
 using MeshSource = std::function<absl::StatusOr<Mesh>(const v1::Body& body)>;
 
 }  // namespace phrenic

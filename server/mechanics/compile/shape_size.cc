@@ -88,6 +88,7 @@ MeshSize SizeOfShape(const v1::Body& body, const SizeSource& source) {
       return SizeOfEllipsoid(body.ellipsoid());
     case v1::Body::kFile:
     case v1::Body::kGenerated:
+    case v1::Body::kDerived:
       return source == nullptr ? MeshSize{} : source(body);
     case v1::Body::SHAPE_NOT_SET:
       break;

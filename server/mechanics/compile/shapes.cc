@@ -122,11 +122,12 @@ absl::StatusOr<Mesh> UncheckedShape(const v1::Body& body, const MeshSource& sour
       return FromEllipsoid(body.ellipsoid());
     case v1::Body::kFile:
     case v1::Body::kGenerated:
+    case v1::Body::kDerived:
       return source(body);
     case v1::Body::SHAPE_NOT_SET:
       break;
   }
-  return absl::InvalidArgumentError("has no shape: set file, generated, polyhedron, grid, block, filling or ellipsoid");
+  return absl::InvalidArgumentError("has no shape: set file, generated, derived, polyhedron, grid, block, filling or ellipsoid");
 }
 
 absl::Status InBody(const v1::Body& body, const absl::Status& status) {

@@ -70,18 +70,19 @@ SheetBinder::SheetBinder(const ModelBuilder& builder, const Triangles& triangles
   }
 }
 
-bool SheetBinder::FindFoot(const Eigen::Vector3i& triangle, const Eigen::Vector3d& point, TriangleBinding& foot) const {
-  constexpr int kRounds = 60;
+bool SheetBinder::FindFoot(const Eigen::Vector3i& triangle, const Eigen::Vector3d& point, double share,
+                           TriangleBinding& foot) const {
+  const int rounds = static_cast<int>(60 / share);
   constexpr double kSettled = 1e-13;
   const Points& x = builder_.model.rest;
   const Eigen::Vector3d a = x.col(triangle[0]), u = x.col(triangle[1]) - a, v = x.col(triangle[2]) - a;
   const Eigen::Matrix3d normals = normals_(Eigen::all, triangle.array() - sheet_->first_vertex);
   foot = BindToPlane(x, triangle, point);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     const Eigen::Vector3d in_basis = InBasis(u, v, (normals * foot.weights).normalized(), point - a);
     const Eigen::Vector3d weights(1 - in_basis[0] - in_basis[1], in_basis[0], in_basis[1]);
     const double change = (weights - foot.weights).cwiseAbs().maxCoeff();
-    foot.weights = weights;
+    foot.weights = share == 1 ? weights : Eigen::Vector3d(foot.weights + share * (weights - foot.weights));
     foot.height = in_basis[2];
     if (change < kSettled) return true;
     if (!std::isfinite(change)) return false;
@@ -94,16 +95,20 @@ TriangleBinding SheetBinder::Foot(const Eigen::Vector3d& point) const {
       tree_.Nearest(builder_.model.rest, boxes_, point, std::numeric_limits<double>::infinity());
   const Eigen::Vector3i triangle = tree_.triangle(nearest.triangle);
   TriangleBinding best, foot;
-  bool found = FindFoot(triangle, point, best);
+  bool found = FindFoot(triangle, point, 1, best);
   if (found && best.weights.minCoeff() >= kOutside) return best;
-  for (const int vertex : triangle) {
-    for (const int t : fans_[vertex - sheet_->first_vertex]) {
-      if (!FindFoot(tree_.triangle(t), point, foot) || (found && !Better(foot, best))) continue;
-      best = foot;
-      found = true;
+  // Where the surface is bent too sharply for the iteration, it may still converge by a part of each step.
+  for (const double share : {1.0, 0.25}) {
+    for (const int vertex : triangle) {
+      for (const int t : fans_[vertex - sheet_->first_vertex]) {
+        if (!FindFoot(tree_.triangle(t), point, share, foot) || (found && !Better(foot, best))) continue;
+        best = foot;
+        found = true;
+      }
     }
+    if (found) return best;
   }
-  if (!found) best.corners.setConstant(-1);
+  best.corners.setConstant(-1);
   return best;
 }
 

@@ -31,8 +31,10 @@ class SheetBinder {
 
  private:
   SheetBinder(const ModelBuilder& builder, const Triangles& triangles);
-  // Returns false if the search for the foot point on this triangle's plane does not converge.
-  bool FindFoot(const Eigen::Vector3i& triangle, const Eigen::Vector3d& point, TriangleBinding& foot) const;
+  // Returns false if the search for the foot point on this triangle's plane, by `share` of each step of a fixed-point
+  // iteration, does not converge.
+  bool FindFoot(const Eigen::Vector3i& triangle, const Eigen::Vector3d& point, double share,
+                TriangleBinding& foot) const;
   // Returns the binding with the foot point inside a triangle, or nearest to inside; no corners if there is no
   // triangle.
   TriangleBinding Foot(const Eigen::Vector3d& point) const;

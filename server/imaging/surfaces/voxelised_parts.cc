@@ -1,0 +1,82 @@
+#include "server/imaging/surfaces/voxelised_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "server/imaging/voxelise.h"
+#include "server/mesh/units.h"
+
+namespace phrenic::imaging {
+namespace {
+
+constexpr double kVoxel = 1.5;       // [mm]
+constexpr double kMostOfGrid = 2e7;  // voxels
+constexpr double kMostOfParts = 2e8;
+constexpr double kFree = 6;  // free voxels around what is voxelised
+
+// Returns an empty grid around the box [mm].
+LabelVolume GridAround(const Eigen::AlignedBox3d& box) {
+  const double voxel = std::max(kVoxel, std::cbrt(box.volume() / kMostOfGrid));
+  LabelVolume volume;
+  volume.size = (box.sizes() / voxel).array().ceil().cast<int>() + static_cast<int>(2 * kFree);
+  volume.to_patient.linear() = voxel * Eigen::Matrix3d::Identity();
+  volume.to_patient.translation() = box.min() - Eigen::Vector3d::Constant(kFree * voxel);
+  volume.labels.assign(static_cast<std::size_t>(volume.size.x()) * volume.size.y() * volume.size.z(), 0);
+  return volume;
+}
+
+Eigen::AlignedBox3d BoxAround(const Points& vertices) {
+  return {Eigen::Vector3d(vertices.rowwise().minCoeff() / kMillimetre),
+          Eigen::Vector3d(vertices.rowwise().maxCoeff() / kMillimetre)};
+}
+
+// Returns the voxels of the grid inside the surface [m].
+Mask MaskOf(const Mesh& mesh, const LabelVolume& volume) {
+  const Eigen::Affine3d to_voxel = volume.to_patient.inverse();
+  const Eigen::AlignedBox3d box = BoxAround(mesh.vertices);
+  LabelVolume around;
+  Mask mask;
+  mask.low = (to_voxel * box.min()).array().floor().cast<int>() - 1;
+  mask.size = (to_voxel * box.max()).array().ceil().cast<int>() + 2 - mask.low.array();
+  around.size = mask.size;
+  around.to_patient = volume.to_patient * Eigen::Translation3d(mask.low.cast<double>());
+  around.labels.assign(static_cast<std::size_t>(mask.size.x()) * mask.size.y() * mask.size.z(), 0);
+  Voxelise(mesh, 1, around);
+  mask.inside.assign(around.labels.begin(), around.labels.end());
+  return mask;
+}
+
+}  // namespace
+
+absl::StatusOr<VoxelisedParts> VoxeliseParts(const std::vector<PatientBody>& bodies) {
+  Eigen::AlignedBox3d box;
+  double voxels = 0;
+  for (const PatientBody& body : bodies) {
+    if (body.mesh.triangles.cols() == 0) {
+      return absl::InvalidArgumentError(absl::StrCat("body \"", body.name, "\": has no triangles to enclose a part"));
+    }
+    const Eigen::AlignedBox3d own = BoxAround(body.mesh.vertices);
+    if (!own.sizes().allFinite())
+      return absl::InvalidArgumentError(absl::StrCat("body \"", body.name, "\": is not finite"));
+    box.extend(own);
+  }
+  if (bodies.empty()) return absl::InvalidArgumentError("there are no surfaces from which to derive others");
+  VoxelisedParts voxelised{GridAround(box), {}};
+  const double voxel = voxelised.volume.Spacing().x();
+  for (const PatientBody& body : bodies) {
+    voxels += (BoxAround(body.mesh.vertices).sizes() / voxel).array().ceil().prod();
+    if (voxels > kMostOfParts) return absl::ResourceExhaustedError("too many large surfaces to derive others from");
+    Part& part = voxelised.parts.emplace_back();
+    part.name = body.name;
+    part.anatomy = body.anatomy;
+    part.mask = MaskOf(body.mesh, voxelised.volume);
+    part.label_voxels = part.mask.Count();
+    if (part.label_voxels > 0) continue;
+    return absl::InvalidArgumentError(absl::StrCat("body \"", body.name, "\": encloses no voxel of ", voxel,
+                                                   " mm: is its unit right, is it closed?"));
+  }
+  return voxelised;
+}
+
+}  // namespace phrenic::imaging

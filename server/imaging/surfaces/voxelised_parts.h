@@ -1,0 +1,26 @@
+// The parts of a thorax from closed surfaces instead of a segmentation, so that the same methods derive the rest of it.
+#ifndef PHRENIC_SERVER_IMAGING_SURFACES_VOXELISED_PARTS_H_
+#define PHRENIC_SERVER_IMAGING_SURFACES_VOXELISED_PARTS_H_
+
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "server/imaging/patient_body.h"
+#include "server/imaging/segmented_parts.h"
+
+namespace phrenic::imaging {
+
+struct VoxelisedParts {
+  LabelVolume volume;  // the grid alone: no voxel has a label
+  std::vector<Part> parts;
+};
+
+// Returns a part for each body, in voxels of 1.5 mm, or larger ones if the bodies are larger than a person: at most 20
+// million in all. A surface with small holes is voxelised but for some lines of voxels. INVALID_ARGUMENT names the body
+// that has no triangles or no voxel inside, and says if there is none; RESOURCE_EXHAUSTED if the parts have more than
+// 200 million voxels together.
+absl::StatusOr<VoxelisedParts> VoxeliseParts(const std::vector<PatientBody>& bodies);
+
+}  // namespace phrenic::imaging
+
+#endif  // PHRENIC_SERVER_IMAGING_SURFACES_VOXELISED_PARTS_H_
