@@ -23,7 +23,7 @@
 #include "server/schema/id.h"
 #include "server/schema/places.h"
 #include "server/schema/schema.h"
-#include "server/session/meshes.h"
+#include "server/session/meshes/meshes.h"
 
 namespace phrenic::client {
 namespace {

@@ -29,18 +29,18 @@ bool IsBone(const Part& part) {
          part.Is(v1::STRUCTURE_STERNUM_BODY) || part.Is(v1::STRUCTURE_MANUBRIUM) || part.Is(v1::STRUCTURE_XIPHOID);
 }
 
-enum Found : std::uint8_t { kNeither, kBone, kSheet, kLung };
+enum class Found : std::uint8_t { kNeither, kBone, kSheet, kLung };
 
 Found FoundOf(const Part& part) {
-  if (IsBone(part)) return kBone;
-  if (part.Is(v1::STRUCTURE_DIAPHRAGM)) return kSheet;
-  return part.Is(v1::STRUCTURE_LUNG) ? kLung : kNeither;
+  if (IsBone(part)) return Found::kBone;
+  if (part.Is(v1::STRUCTURE_DIAPHRAGM)) return Found::kSheet;
+  return part.Is(v1::STRUCTURE_LUNG) ? Found::kLung : Found::kNeither;
 }
 
 // Returns what is found in each voxel. Of parts that overlap, bone and then the diaphragm win.
 std::vector<Found> FindInVoxels(const LabelVolume& volume, const std::vector<Part>& parts) {
-  std::vector<Found> found(volume.labels.size(), kNeither);
-  for (const Found kind : {kLung, kSheet, kBone}) {
+  std::vector<Found> found(volume.labels.size(), Found::kNeither);
+  for (const Found kind : {Found::kLung, Found::kSheet, Found::kBone}) {
     for (const Part& part : parts) {
       if (FoundOf(part) != kind) continue;
       const Mask& mask = part.mask;
@@ -70,11 +70,12 @@ Met Follow(const LabelVolume& volume, const std::vector<Found>& found, const Eig
   double entered = -1;
   for (double depth = step; depth < kFurthestBone; depth += step) {
     const Eigen::Vector3i voxel = (to_voxel * ray.At(depth)).array().round().cast<int>();
-    const Found here = volume.Contains(voxel) ? found[volume.Index(voxel)] : kNeither;
-    if (here == kSheet && entered < 0) entered = depth;
-    if (here != kSheet && entered >= 0 && std::isinf(met.sheet)) met.sheet = (entered + depth - step) / 2;
-    if (here == kLung && std::isfinite(met.sheet)) met.lung_beyond_sheet = std::min(met.lung_beyond_sheet, depth);
-    if (here == kBone) {
+    const Found here = volume.Contains(voxel) ? found[volume.Index(voxel)] : Found::kNeither;
+    if (here == Found::kSheet && entered < 0) entered = depth;
+    if (here != Found::kSheet && entered >= 0 && std::isinf(met.sheet)) met.sheet = (entered + depth - step) / 2;
+    if (here == Found::kLung && std::isfinite(met.sheet))
+      met.lung_beyond_sheet = std::min(met.lung_beyond_sheet, depth);
+    if (here == Found::kBone) {
       met.bone = depth;
       break;
     }

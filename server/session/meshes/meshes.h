@@ -1,13 +1,13 @@
 // The sources of meshes for compiling a scene: generated parts, surface files below the data folder, and uploads.
-#ifndef PHRENIC_SERVER_SESSION_MESHES_H_
-#define PHRENIC_SERVER_SESSION_MESHES_H_
+#ifndef PHRENIC_SERVER_SESSION_MESHES_MESHES_H_
+#define PHRENIC_SERVER_SESSION_MESHES_MESHES_H_
 
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "server/mechanics/compile/compile.h"
-#include "server/session/mesh_cache.h"
+#include "server/session/meshes/mesh_cache.h"
 #include "server/session/uploads.h"
 
 namespace phrenic::session {
@@ -17,7 +17,8 @@ namespace phrenic::session {
 // INVALID_ARGUMENT also for a folder. Thread-safe; the file may change afterwards.
 absl::StatusOr<std::string> ResolveBelow(const std::string& data_dir, const std::string& path);
 
-// Returns the surface file of a body, also of one that fills it or is derived from it; null if the body has none. It belongs to `body`.
+// Returns the surface file of a body, also of one that fills it or is derived from it; null if the body has none. It
+// belongs to `body`.
 const v1::SurfaceFile* FileOf(const v1::Body& body);
 // True for a path "upload:SHA256".
 bool IsUpload(const std::string& path);
@@ -34,4 +35,4 @@ SizeSource MakeSizeSource(std::string data_dir, const std::vector<Uploads::Held>
 
 }  // namespace phrenic::session
 
-#endif  // PHRENIC_SERVER_SESSION_MESHES_H_
+#endif  // PHRENIC_SERVER_SESSION_MESHES_MESHES_H_

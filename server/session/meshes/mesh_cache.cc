@@ -1,7 +1,5 @@
-#include "server/session/mesh_cache.h"
+#include "server/session/meshes/mesh_cache.h"
 
-#include <elf.h>
-#include <link.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +15,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/crypto/sha256.h"
 #include "server/schema/file_bytes.h"
+#include "server/session/meshes/mesh_code.h"
 
 namespace phrenic::session {
 namespace {
@@ -25,43 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kHashDigits = 64;
 constexpr char kEnding[] = ".mesh";
-
-// Returns the GNU build ID of a loaded object: "" if it has none.
-std::string BuildIdOf(const dl_phdr_info& object) {
-  for (int i = 0; i < object.dlpi_phnum; ++i) {
-    if (object.dlpi_phdr[i].p_type != PT_NOTE) continue;
-    const char* at = reinterpret_cast<const char*>(object.dlpi_addr + object.dlpi_phdr[i].p_vaddr);
-    const char* const end = at + object.dlpi_phdr[i].p_memsz;
-    while (end - at >= static_cast<std::ptrdiff_t>(sizeof(ElfW(Nhdr)))) {
-      ElfW(Nhdr) note;
-      std::memcpy(&note, at, sizeof note);
-      const auto padded = [](ElfW(Word) size) { return (size + 3) & ~ElfW(Word){3}; };
-      const char* const name = at + sizeof note;
-      const char* const content = name + padded(note.n_namesz);
-      if (content > end || end - content < note.n_descsz) break;
-      if (note.n_type == NT_GNU_BUILD_ID && note.n_namesz == sizeof "GNU" && std::memcmp(name, "GNU", 4) == 0) {
-        return {content, note.n_descsz};
-      }
-      at = content + padded(note.n_descsz);
-    }
-  }
-  return "";
-}
-
-// Returns the build ID of this program, the first of the loaded objects.
-const std::string& BuildId() {
-  static const std::string& id = *new std::string([] {
-    std::string found;
-    dl_iterate_phdr(
-        [](dl_phdr_info* object, std::size_t, void* to) {
-          *static_cast<std::string*>(to) = BuildIdOf(*object);
-          return 1;
-        },
-        &found);
-    return found;
-  }());
-  return id;
-}
 
 // Returns the lines of /proc/cpuinfo about the first processor that decide which functions the libraries choose.
 const std::string& Processor() {
@@ -191,9 +153,9 @@ MeshCache::MeshCache(std::string folder, std::int64_t most_bytes)
 
 absl::StatusOr<Mesh> MeshCache::Get(const v1::Anatomy& part, const v1::Generated& shape,
                                     absl::FunctionRef<absl::StatusOr<Mesh>()> generate) const {
-  if (folder_.empty() || BuildId().empty()) return generate();
+  if (folder_.empty()) return generate();
   const std::string key =
-      absl::StrCat(BuildId(), Processor(), part.SerializeAsString(), "|", shape.SerializeAsString());
+      absl::StrCat(kMeshCode, Processor(), part.SerializeAsString(), "|", shape.SerializeAsString());
   const std::string file = absl::StrCat(folder_, "/", Sha256Hex(key), kEnding);
   if (const auto bytes = ReadBytes(file)) {
     if (auto mesh = UnpackMesh(*bytes)) return *std::move(mesh);

@@ -1,6 +1,6 @@
 // Generated meshes, kept in a folder: a thorax takes seconds to generate and a hundredth of that to read.
-#ifndef PHRENIC_SERVER_SESSION_MESH_CACHE_H_
-#define PHRENIC_SERVER_SESSION_MESH_CACHE_H_
+#ifndef PHRENIC_SERVER_SESSION_MESHES_MESH_CACHE_H_
+#define PHRENIC_SERVER_SESSION_MESHES_MESH_CACHE_H_
 
 #include <cstdint>
 #include <optional>
@@ -18,8 +18,9 @@ namespace phrenic::session {
 // of these variables is set.
 std::string DefaultCacheFolder();
 
-// A folder of files, one per mesh, named by a hash of the part, its resolution, the program (its build ID) and the
-// processor: other versions generate other bits, and so do the libraries' functions on another processor. Damaged files
+// A folder of files, one per mesh, named by a hash of the part, its resolution, the code that generates it (kMeshCode)
+// and the processor: other versions generate other bits, and so do the libraries' functions on another processor. All
+// programs of a build share the files. Damaged ones
 // are generated again. A folder that cannot be written to disables the cache without an error. Thread-safe, also across
 // processes, as files are complete before they get their name.
 class MeshCache {
@@ -49,4 +50,4 @@ std::optional<Mesh> UnpackMesh(std::string_view bytes);
 
 }  // namespace phrenic::session
 
-#endif  // PHRENIC_SERVER_SESSION_MESH_CACHE_H_
+#endif  // PHRENIC_SERVER_SESSION_MESHES_MESH_CACHE_H_
