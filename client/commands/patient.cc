@@ -1,5 +1,5 @@
 // `phrenic patient`: makes a breathing thorax from a label volume or from surface files.
-#include "server/imaging/patient.h"
+#include "server/imaging/patient/patient.h"
 
 #include <unistd.h>
 
@@ -23,7 +23,7 @@
 #include "server/schema/id.h"
 #include "server/schema/places.h"
 #include "server/schema/schema.h"
-#include "server/session/meshes/meshes.h"
+#include "server/session/meshes.h"
 
 namespace phrenic::client {
 namespace {

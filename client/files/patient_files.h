@@ -5,7 +5,7 @@
 #include <string>
 
 #include "absl/status/status.h"
-#include "server/imaging/patient.h"
+#include "server/imaging/patient/patient.h"
 
 namespace phrenic::client {
 

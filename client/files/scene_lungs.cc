@@ -4,7 +4,7 @@
 #include "server/mechanics/compile/shapes.h"
 #include "server/mesh/topology.h"
 #include "server/schema/places.h"
-#include "server/session/meshes/meshes.h"
+#include "server/session/meshes.h"
 #include "server/session/models.h"
 
 namespace phrenic::client {

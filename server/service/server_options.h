@@ -13,7 +13,7 @@
 #include "server/schema/places.h"
 #include "server/service/net/tls.h"
 #include "server/session/limits.h"
-#include "server/session/meshes/mesh_cache.h"
+#include "server/session/mesh_cache/mesh_cache.h"
 
 namespace phrenic::service {
 

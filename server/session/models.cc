@@ -13,7 +13,7 @@
 #include "server/mechanics/compile/shape_size.h"
 #include "server/mechanics/stop_check.h"
 #include "server/schema/schema.h"
-#include "server/session/meshes/meshes.h"
+#include "server/session/meshes.h"
 #include "server/session/scene_hash.h"
 
 namespace phrenic::session {

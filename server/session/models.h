@@ -18,7 +18,7 @@
 #include "phrenic/v1/session.pb.h"
 #include "server/mechanics/compile/compile.h"
 #include "server/session/compile_slots.h"
-#include "server/session/meshes/mesh_cache.h"
+#include "server/session/mesh_cache/mesh_cache.h"
 #include "server/session/requester.h"
 #include "server/session/scene_catalogue.h"
 #include "server/session/uploads.h"

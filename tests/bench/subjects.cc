@@ -8,7 +8,7 @@
 #include "server/mesh/locality.h"
 #include "server/mesh/topology.h"
 #include "server/schema/schema.h"
-#include "server/session/meshes/meshes.h"
+#include "server/session/meshes.h"
 #include "server/session/scene_catalogue.h"
 
 namespace phrenic::bench {

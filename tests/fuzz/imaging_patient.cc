@@ -8,7 +8,7 @@
 
 #include "server/imaging/label_map.h"
 #include "server/imaging/nifti.h"
-#include "server/imaging/patient.h"
+#include "server/imaging/patient/patient.h"
 #include "server/schema/schema.h"
 
 namespace phrenic::imaging {

@@ -1,6 +1,6 @@
 // A phantom's label volume is converted to a thorax; surfaces, rib axes and diaphragm are compared with the ground
 // truth.
-#include "server/imaging/patient.h"
+#include "server/imaging/patient/patient.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

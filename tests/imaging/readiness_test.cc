@@ -1,5 +1,5 @@
 // The verdict on a label volume: each finding comes with its cause, and goes with it.
-#include "server/imaging/readiness/readiness.h"
+#include "server/imaging/patient/readiness.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "server/imaging/label_map.h"
-#include "server/imaging/patient_scene.h"
+#include "server/imaging/patient/patient_scene.h"
 #include "server/imaging/phantom.h"
 
 namespace phrenic::imaging {

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "server/imaging/label_map.h"
-#include "server/imaging/patient.h"
+#include "server/imaging/patient/patient.h"
 #include "server/imaging/phantom.h"
 #include "server/mechanics/compile/compile.h"
 #include "server/physiology/physiology.h"

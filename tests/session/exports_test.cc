@@ -9,7 +9,7 @@
 #include "server/crypto/sha256.h"
 #include "server/mechanics/state.h"
 #include "server/mechanics/step/step.h"
-#include "server/session/meshes/meshes.h"
+#include "server/session/meshes.h"
 #include "server/session/scene_hash.h"
 #include "server/session/uploads.h"
 #include "tests/compile_text.h"

@@ -1,5 +1,5 @@
 // A kept mesh has the bits of a generated one; damage, other writers and a full folder cost time, never a wrong mesh.
-#include "server/session/meshes/mesh_cache.h"
+#include "server/session/mesh_cache/mesh_cache.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "server/session/meshes/meshes.h"
+#include "server/session/meshes.h"
 #include "tests/compile_text.h"
 #include "tests/fake_clock.h"
 #include "tests/small_scenes.h"

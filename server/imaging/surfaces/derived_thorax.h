@@ -10,7 +10,7 @@
 #include "phrenic/v1/scene.pb.h"
 #include "server/imaging/cage_frame.h"
 #include "server/imaging/derived_diaphragm.h"
-#include "server/imaging/patient_body.h"
+#include "server/imaging/patient/patient_body.h"
 
 namespace phrenic::imaging {
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/imaging/patient_scene.h"
+#include "server/imaging/patient/patient_scene.h"
 
 namespace phrenic::imaging {
 namespace {

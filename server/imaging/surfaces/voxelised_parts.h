@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "server/imaging/patient_body.h"
+#include "server/imaging/patient/patient_body.h"
 #include "server/imaging/segmented_parts.h"
 
 namespace phrenic::imaging {

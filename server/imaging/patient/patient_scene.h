@@ -1,12 +1,12 @@
 // Builds the scene of a patient's thorax from a pattern scene.
-#ifndef PHRENIC_SERVER_IMAGING_PATIENT_SCENE_H_
-#define PHRENIC_SERVER_IMAGING_PATIENT_SCENE_H_
+#ifndef PHRENIC_SERVER_IMAGING_PATIENT_PATIENT_SCENE_H_
+#define PHRENIC_SERVER_IMAGING_PATIENT_PATIENT_SCENE_H_
 
 #include <string>
 #include <vector>
 
 #include "server/imaging/cage_frame.h"
-#include "server/imaging/patient_body.h"
+#include "server/imaging/patient/patient_body.h"
 
 namespace phrenic::imaging {
 
@@ -30,4 +30,4 @@ v1::Scene PatientScene(const v1::Scene& pattern, const std::vector<PatientBody>&
 
 }  // namespace phrenic::imaging
 
-#endif  // PHRENIC_SERVER_IMAGING_PATIENT_SCENE_H_
+#endif  // PHRENIC_SERVER_IMAGING_PATIENT_PATIENT_SCENE_H_

@@ -1,12 +1,12 @@
-#include "server/imaging/readiness/readiness.h"
+#include "server/imaging/patient/readiness.h"
 
 #include <algorithm>
 #include <limits>
 
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "server/imaging/patient_scene.h"
-#include "server/imaging/readiness/border.h"
+#include "server/imaging/patient/border.h"
+#include "server/imaging/patient/patient_scene.h"
 #include "server/mesh/self_crossings.h"
 
 namespace phrenic::imaging {

@@ -1,6 +1,6 @@
 // Generated meshes, kept in a folder: a thorax takes seconds to generate and a hundredth of that to read.
-#ifndef PHRENIC_SERVER_SESSION_MESHES_MESH_CACHE_H_
-#define PHRENIC_SERVER_SESSION_MESHES_MESH_CACHE_H_
+#ifndef PHRENIC_SERVER_SESSION_MESH_CACHE_MESH_CACHE_H_
+#define PHRENIC_SERVER_SESSION_MESH_CACHE_MESH_CACHE_H_
 
 #include <cstdint>
 #include <optional>
@@ -50,4 +50,4 @@ std::optional<Mesh> UnpackMesh(std::string_view bytes);
 
 }  // namespace phrenic::session
 
-#endif  // PHRENIC_SERVER_SESSION_MESHES_MESH_CACHE_H_
+#endif  // PHRENIC_SERVER_SESSION_MESH_CACHE_MESH_CACHE_H_

@@ -1,4 +1,4 @@
-#include "server/session/meshes/mesh_cache.h"
+#include "server/session/mesh_cache/mesh_cache.h"
 
 #include <unistd.h>
 
@@ -15,7 +15,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/crypto/sha256.h"
 #include "server/schema/file_bytes.h"
-#include "server/session/meshes/mesh_code.h"
+#include "server/session/mesh_cache/mesh_code.h"
 
 namespace phrenic::session {
 namespace {

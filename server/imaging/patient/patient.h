@@ -1,6 +1,6 @@
 // Converts a label volume to a breathing thorax: surfaces, a derived diaphragm, a scene, and a report of assumptions.
-#ifndef PHRENIC_SERVER_IMAGING_PATIENT_H_
-#define PHRENIC_SERVER_IMAGING_PATIENT_H_
+#ifndef PHRENIC_SERVER_IMAGING_PATIENT_PATIENT_H_
+#define PHRENIC_SERVER_IMAGING_PATIENT_PATIENT_H_
 
 #include <string>
 #include <string_view>
@@ -11,7 +11,7 @@
 #include "phrenic/v1/patient.pb.h"
 #include "server/imaging/derived_diaphragm.h"
 #include "server/imaging/label_volume.h"
-#include "server/imaging/patient_body.h"
+#include "server/imaging/patient/patient_body.h"
 
 namespace phrenic::imaging {
 
@@ -39,4 +39,4 @@ absl::StatusOr<Patient> MakePatient(const LabelVolume& volume, const v1::LabelMa
 
 }  // namespace phrenic::imaging
 
-#endif  // PHRENIC_SERVER_IMAGING_PATIENT_H_
+#endif  // PHRENIC_SERVER_IMAGING_PATIENT_PATIENT_H_

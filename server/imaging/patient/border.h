@@ -1,6 +1,6 @@
 // Where the border of a volume cuts a part.
-#ifndef PHRENIC_SERVER_IMAGING_READINESS_BORDER_H_
-#define PHRENIC_SERVER_IMAGING_READINESS_BORDER_H_
+#ifndef PHRENIC_SERVER_IMAGING_PATIENT_BORDER_H_
+#define PHRENIC_SERVER_IMAGING_PATIENT_BORDER_H_
 
 #include <string>
 
@@ -19,4 +19,4 @@ BorderCut LargestCut(const LabelVolume& volume, const Part& part);
 
 }  // namespace phrenic::imaging
 
-#endif  // PHRENIC_SERVER_IMAGING_READINESS_BORDER_H_
+#endif  // PHRENIC_SERVER_IMAGING_PATIENT_BORDER_H_

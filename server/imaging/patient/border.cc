@@ -1,4 +1,4 @@
-#include "server/imaging/readiness/border.h"
+#include "server/imaging/patient/border.h"
 
 #include <array>
 #include <cmath>

@@ -1,13 +1,13 @@
 // The sources of meshes for compiling a scene: generated parts, surface files below the data folder, and uploads.
-#ifndef PHRENIC_SERVER_SESSION_MESHES_MESHES_H_
-#define PHRENIC_SERVER_SESSION_MESHES_MESHES_H_
+#ifndef PHRENIC_SERVER_SESSION_MESHES_H_
+#define PHRENIC_SERVER_SESSION_MESHES_H_
 
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "server/mechanics/compile/compile.h"
-#include "server/session/meshes/mesh_cache.h"
+#include "server/session/mesh_cache/mesh_cache.h"
 #include "server/session/uploads.h"
 
 namespace phrenic::session {
@@ -35,4 +35,4 @@ SizeSource MakeSizeSource(std::string data_dir, const std::vector<Uploads::Held>
 
 }  // namespace phrenic::session
 
-#endif  // PHRENIC_SERVER_SESSION_MESHES_MESHES_H_
+#endif  // PHRENIC_SERVER_SESSION_MESHES_H_

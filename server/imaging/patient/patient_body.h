@@ -1,6 +1,6 @@
 // A body of a patient's thorax.
-#ifndef PHRENIC_SERVER_IMAGING_PATIENT_BODY_H_
-#define PHRENIC_SERVER_IMAGING_PATIENT_BODY_H_
+#ifndef PHRENIC_SERVER_IMAGING_PATIENT_PATIENT_BODY_H_
+#define PHRENIC_SERVER_IMAGING_PATIENT_PATIENT_BODY_H_
 
 #include <string>
 
@@ -17,4 +17,4 @@ struct PatientBody {
 
 }  // namespace phrenic::imaging
 
-#endif  // PHRENIC_SERVER_IMAGING_PATIENT_BODY_H_
+#endif  // PHRENIC_SERVER_IMAGING_PATIENT_PATIENT_BODY_H_

@@ -1,11 +1,11 @@
 // Judges whether a label volume shows enough of a thorax for its simulation to say something about the person.
-#ifndef PHRENIC_SERVER_IMAGING_READINESS_READINESS_H_
-#define PHRENIC_SERVER_IMAGING_READINESS_READINESS_H_
+#ifndef PHRENIC_SERVER_IMAGING_PATIENT_READINESS_H_
+#define PHRENIC_SERVER_IMAGING_PATIENT_READINESS_H_
 
 #include <vector>
 
 #include "server/imaging/label_volume.h"
-#include "server/imaging/patient_body.h"
+#include "server/imaging/patient/patient_body.h"
 #include "server/imaging/segmented_parts.h"
 
 namespace phrenic::imaging {
@@ -29,4 +29,4 @@ v1::Readiness JudgeReadiness(const LabelVolume& volume, const std::vector<Part>&
 
 }  // namespace phrenic::imaging
 
-#endif  // PHRENIC_SERVER_IMAGING_READINESS_READINESS_H_
+#endif  // PHRENIC_SERVER_IMAGING_PATIENT_READINESS_H_

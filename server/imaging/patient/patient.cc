@@ -1,4 +1,4 @@
-#include "server/imaging/patient.h"
+#include "server/imaging/patient/patient.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include "absl/strings/str_format.h"
 #include "server/imaging/label_map.h"
 #include "server/imaging/label_surface.h"
-#include "server/imaging/patient_scene.h"
-#include "server/imaging/readiness/readiness.h"
+#include "server/imaging/patient/patient_scene.h"
+#include "server/imaging/patient/readiness.h"
 #include "server/imaging/rib_axis.h"
 #include "server/mesh/topology.h"
 #include "server/mesh/units.h"

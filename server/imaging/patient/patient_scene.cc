@@ -1,4 +1,4 @@
-#include "server/imaging/patient_scene.h"
+#include "server/imaging/patient/patient_scene.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "server/session/meshes/meshes.h"
+#include "server/session/meshes.h"
 
 #include <algorithm>
 #include <filesystem>
