@@ -42,6 +42,7 @@ std::vector<Tissue> ClassifyVoxels(const LabelVolume& volume, const std::vector<
   std::vector<Tissue> tissues(volume.labels.size(), kNothing);
   const auto rank = [](const Part* part) { return TissueOf(*part) == kBone ? 2 : TissueOf(*part) == kSheet ? 1 : 0; };
   std::vector<const Part*> ordered;
+  ordered.reserve(parts.size());
   for (const Part& part : parts) ordered.push_back(&part);
   std::ranges::stable_sort(ordered, {}, rank);
   for (const Part* each : ordered) {

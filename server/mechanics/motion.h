@@ -21,8 +21,8 @@ class Motion {
   virtual void Drive(const EvalContext& at, State& state) const = 0;
   // True if what it drives depends on coordinates of the state: a step drives it again at its end.
   virtual bool follows_coordinates() const { return false; }
-  // Returns why what it has driven cannot be right, with the remedy; empty if nothing is wrong. For people: a warning of
-  // every output, and the cause of a divergence.
+  // Returns why what it has driven cannot be right, with the remedy; empty if nothing is wrong. For people: a warning
+  // of every output, and the cause of a divergence.
   virtual std::string Warning(const State& /*state*/) const { return {}; }
   // Adds to the coordinates the generalised forces of the forces on the vertices that it drives, by virtual work:
   // Q_j += sum_i f_i . dx_i/dq_j. Linear in `f`, 3 x n [N].

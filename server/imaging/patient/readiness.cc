@@ -108,7 +108,8 @@ void FindOddAxes(const v1::PatientReport& report, Findings& findings) {
   Add(4 * odd.size() >= static_cast<std::size_t>(report.ribs_size()),
       absl::StrFormat(
           "axes of ribs are at angles to the midsagittal plane that no person has [degree] (%s): these ribs "
-          "would move inwards or not at all; check that their necks are in the volume and labelled",
+          "would move inwards or not at all; check that their necks are in the volume "
+          "and labelled, and that --edge-length is at most 6 mm",
           absl::StrJoin(odd, ", ")),
       findings);
 }

@@ -127,7 +127,8 @@ absl::StatusOr<Mesh> UncheckedShape(const v1::Body& body, const MeshSource& sour
     case v1::Body::SHAPE_NOT_SET:
       break;
   }
-  return absl::InvalidArgumentError("has no shape: set file, generated, derived, polyhedron, grid, block, filling or ellipsoid");
+  return absl::InvalidArgumentError(
+      "has no shape: set file, generated, derived, polyhedron, grid, block, filling or ellipsoid");
 }
 
 absl::Status InBody(const v1::Body& body, const absl::Status& status) {

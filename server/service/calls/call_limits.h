@@ -38,9 +38,9 @@ class CallLimits {
   // when it has the headers, and holds it until the call is done. RESOURCE_EXHAUSTED if all are held. Callers of the
   // second kind have 1/16 as many places, each of them and together.
   FairShare& in_flight(bool known) { return known ? in_flight_ : unknown_; }
-  // Requests that are being read, 24 in all and 4 of one caller; conversations whose client is to send a further one, 64
-  // and 16. A place may cost the memory of the largest request. Up to `max_calls` requests of a caller wait to be read; conversations do not wait and end with
-  // RESOURCE_EXHAUSTED.
+  // Requests that are being read, 24 in all and 4 of one caller; conversations whose client is to send a further one,
+  // 64 and 16. A place may cost the memory of the largest request. Up to `max_calls` requests of a caller wait to be
+  // read; conversations do not wait and end with RESOURCE_EXHAUSTED.
   FairShare& unread() { return unread_; }
   FairShare& conversations() { return conversations_; }
   // Large requests that were read and are not answered, so that a caller does not pile them up: one of the largest size

@@ -62,8 +62,8 @@ class IncomingCall : public grpc::ServerGenericBidiReactor, public std::enable_s
   // account or a link on a server with accounts.
   const std::string& caller() const { return caller_; }
   CallLimits& limits() { return limits_; }
-  // Reads the next request of a conversation, for which the client has a minute. The call ends with OK if the client has
-  // no further one. Requires: the call's last request was answered.
+  // Reads the next request of a conversation, for which the client has a minute. The call ends with OK if the client
+  // has no further one. Requires: the call's last request was answered.
   void ReadNext();
   // Waits for a place in `share`. Finishes the call if too many wait, or if its client goes away. `granted` runs at
   // most once, at once or on a thread that gives a place back, and keeps the call alive. RESOURCE_EXHAUSTED or

@@ -16,8 +16,8 @@ constexpr std::chrono::seconds kFanOutTimeout(2);
 
 }  // namespace
 
-ForwardedCall::ForwardedCall(SessionRouter& router, AccessGuard& guard, CallLimits& limits,
-                             const Method* method, grpc::GenericCallbackServerContext& context)
+ForwardedCall::ForwardedCall(SessionRouter& router, AccessGuard& guard, CallLimits& limits, const Method* method,
+                             grpc::GenericCallbackServerContext& context)
     : IncomingCall(guard, limits, context),
       router_(router),
       conversation_(method != nullptr && method->conversation),
@@ -25,8 +25,8 @@ ForwardedCall::ForwardedCall(SessionRouter& router, AccessGuard& guard, CallLimi
       peer_(PeerOf(context).empty() ? "unknown" : PeerOf(context)),
       metadata_(SessionRouter::ForwardedMetadata(context)) {}
 
-ForwardedCall* ForwardedCall::Make(SessionRouter& router, AccessGuard& guard, CallLimits& limits,
-                                   const Method* method, grpc::GenericCallbackServerContext& context) {
+ForwardedCall* ForwardedCall::Make(SessionRouter& router, AccessGuard& guard, CallLimits& limits, const Method* method,
+                                   grpc::GenericCallbackServerContext& context) {
   const std::shared_ptr<ForwardedCall> call(new ForwardedCall(router, guard, limits, method, context));
   call->Begin(method == nullptr ? nullptr : method->rule);
   return call.get();

@@ -18,8 +18,8 @@
 namespace phrenic::service {
 
 // Reads a request and writes any number of responses. Reads the next response from upstream after the previous one is
-// written, so that a slow client exerts back-pressure. Each request of a conversation is a call of its own to the target:
-// when that has ended with OK, the next request is read.
+// written, so that a slow client exerts back-pressure. Each request of a conversation is a call of its own to the
+// target: when that has ended with OK, the next request is read.
 //
 // The request is read first; then FindRoute runs on a thread of the limits, which is free again when it returns. The
 // handlers of the upstream calls run on gRPC's threads, one at a time unless the call fans out. Members without a guard
