@@ -119,9 +119,8 @@ int ServePatient(const PatientOptions& options) {
 
 int PrintNext(const PatientOptions& options, const std::string& data) {
   const std::string scene = SceneFile(options.out, options.name);
-  std::cerr << "wrote " << scene << "; next:\n"
-            << "  phrenic run " << scene << " --data " << data << "\n"
-            << "  phrenicd --data " << data << " --start " << options.name << "\n";
+  std::cerr << "wrote " << scene << "; next:\n  phrenic run " << scene << " --data " << data << "\n";
+  if (data == options.out) std::cerr << "  phrenicd --data " << data << " --start " << options.name << "\n";
   return kOk;
 }
 
@@ -134,11 +133,15 @@ int MakeFromSurfaces(const PatientOptions& options) {
   const absl::StatusOr<v1::Scene> scene_template = ReadTemplate();
   if (!scene_template.ok()) return Fail(scene_template.status());
   const std::string& data = options.data.empty() ? options.out : options.data;
+  if (options.serve && data != options.out) {
+    return Fail(absl::InvalidArgumentError(
+        absl::StrCat("--serve: a server has one data folder, and the surfaces are in ", data, "; give --out ", data)));
+  }
   const auto made = imaging::MakeSurfaceScene(session::MakeMeshSource(data), *surfaces, *scene_template, options.name);
   if (!made.ok()) return Fail(made.status());
   if (absl::Status status = WriteScene(options.out, made->scene); !status.ok()) return Fail(status);
   for (const std::string& fallback : made->fallbacks) std::cout << "fall-back: " << fallback << "\n";
-  return PrintNext(options, data);
+  return options.serve ? ServePatient(options) : PrintNext(options, data);
 }
 
 int MakePatient(const Context& context, const PatientOptions& options) {

@@ -28,8 +28,8 @@ bool IsMargin(const Part& part, bool labelled) {
   return rib || part.Is(v1::STRUCTURE_COSTAL_CARTILAGE);
 }
 
-// Returns the height of the lowest point of the margin in each direction; infinity if there is none. Bones are apart,
-// so all within a direction count; of the labelled diaphragm, whose margin is steep, those within 1.5 degrees.
+// Returns the height of the lowest point of the margin in each direction; infinity where none was found. Bones are
+// apart, so all within a direction count; of the labelled diaphragm, whose margin is steep, those within 1.5 degrees.
 std::vector<double> CostalMargin(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame) {
   constexpr double kNarrow = 1.5;  // [degrees]
   const bool labelled = std::ranges::any_of(parts, [](const Part& part) { return part.Is(v1::STRUCTURE_DIAPHRAGM); });

@@ -100,7 +100,7 @@ void SessionService::AddTo(CallTable& calls) {
   calls.Add(Lane::kSession, *this, &SessionService::PlaySession);
   calls.Add(Lane::kSession, *this, &SessionService::PauseSession);
   calls.Add(Lane::kSession, *this, &SessionService::StepSession);
-  calls.AddConversation(Lane::kSession, *this, &SessionService::Advance);
+  calls.AddConversation(Lane::kStream, *this, &SessionService::Advance);
   calls.Add(Lane::kSession, *this, &SessionService::GetState);
   calls.Add(Lane::kSession, *this, &SessionService::ResetSession);
   calls.Add(Lane::kSession, *this, &SessionService::UpdateParameters);

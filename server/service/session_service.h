@@ -45,7 +45,8 @@ class SessionService final {
   // On Lane::kSession. The owner's account and administrators need no control token. Streams end with NOT_FOUND.
   grpc::Status DeleteSession(grpc::CallbackServerContext* context, const v1::DeleteSessionRequest* request,
                              v1::DeleteSessionResponse* response);
-  // On Lane::kSession, as all below. NOT_FOUND also for a leader (in_step_with) that the caller may not see.
+  // On Lane::kSession, as all below but Advance. NOT_FOUND also for a leader (in_step_with) that the caller may not
+  // see.
   grpc::Status PlaySession(grpc::CallbackServerContext* context, const v1::PlaySessionRequest* request,
                            v1::PlaySessionResponse* response);
   // Takes effect after the step in progress. A StepSession in progress then ends with ABORTED.
@@ -54,7 +55,8 @@ class SessionService final {
   // Returns after the last step. Ends early with CANCELLED if the caller disconnects, unless the request has a
   // request_id: a repeat then gets the result.
   grpc::Status StepSession(ServedCall& call, const v1::StepSessionRequest& request, v1::StepSessionResponse* response);
-  // Answers one request of the stream; the next is read after it. A change is acknowledged as StepSession's.
+  // On Lane::kStream, since a client that does not read blocks its thread. Answers one request of the stream; the next
+  // is read after it. A change is acknowledged as StepSession's.
   grpc::Status Advance(ServedCall& call, const v1::AdvanceRequest& request, v1::AdvanceResponse* response);
   // Waits at most for the current step, and leaves the stepping thread no work. RESOURCE_EXHAUSTED, here and above,
   // before the parts of a state are copied that the caller leaves unread (CallLimits::replies).

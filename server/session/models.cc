@@ -141,15 +141,16 @@ absl::StatusOr<std::shared_ptr<const Model>> Models::CompileNow(const v1::Scene&
   const auto size = EstimateSize(scene, options.size_of, options.limits);
   if (!size.ok()) return size.status();
   job.elements = size->elements;
-  const MeshSource meshes = imaging::WithDerived(MakeMeshSource(data_dir_, surfaces, cache_), scene);
-  if (by.trusted) return phrenic::Compile(scene, meshes, options);
+  const MeshSource source = MakeMeshSource(data_dir_, surfaces, cache_);
+  if (by.trusted) return phrenic::Compile(scene, imaging::WithDerived(source, scene), options);
   options.longest = limits_.compile_seconds;
   options.cancelled = [&by, &job] { return job.others == 0 && IsCancelled(by); };
   const bool small = size->vertices <= kSmallScene && size->elements <= kSmallScene;
   const auto lane = small ? CompileSlots::Lane::kSmall : CompileSlots::Lane::kLarge;
   const auto slot = slots_.Take(by.share, lane, options.cancelled);
   if (!slot.ok()) return slot.status();
-  return phrenic::Compile(scene, meshes, options);
+  const StopCheck stop(options.cancelled, options.longest, "--max-compile-seconds");
+  return phrenic::Compile(scene, imaging::WithDerived(source, scene, [&stop] { return stop.status(); }), options);
 }
 
 absl::StatusOr<std::shared_ptr<const Model>> Models::Find(const v1::Scene& scene, const Surfaces& surfaces,

@@ -175,6 +175,35 @@ TEST(VoxeliseParts, RefusesWhatEnclosesNothing) {
   EXPECT_THAT(std::string(VoxeliseParts({flat}).status().message()), HasSubstr("\"plate\": encloses no voxel"));
 }
 
+// A box of these sides [m] far from the origin.
+PatientBody BoxOf(const Eigen::Vector3d& sides, const Eigen::Vector3d& at) {
+  PatientBody body{"box", {}, {}};
+  body.mesh.vertices.resize(3, 4);
+  body.mesh.vertices << at, at + Eigen::Vector3d(sides.x(), 0, 0), at + Eigen::Vector3d(0, sides.y(), 0),
+      at + Eigen::Vector3d(0, 0, sides.z());
+  body.mesh.triangles = (Triangles(3, 4) << 0, 0, 0, 1, 2, 1, 3, 2, 1, 3, 2, 3).finished();
+  return body;
+}
+
+TEST(VoxeliseParts, HasABoundedGridAlsoForFlatSurfaces) {
+  for (const Eigen::Vector3d& sides :
+       {Eigen::Vector3d(2.9, 2.9, 0), Eigen::Vector3d(2.9, 2.9, 0.05), Eigen::Vector3d(2.9, 2.9, 2.9)}) {
+    const auto parts = VoxeliseParts({BoxOf(sides, Eigen::Vector3d::Zero())});
+    if (!parts.ok()) continue;  // a plate may lie between voxels
+    EXPECT_LE(parts->volume.labels.size(), 20'000'000U);
+  }
+  const auto apart = VoxeliseParts({BoxOf({0.1, 0.1, 0.1}, {0, 0, 0}), BoxOf({0.1, 0.1, 0.1}, {1e6, 1e6, 0})});
+  EXPECT_THAT(std::string(apart.status().message()), HasSubstr("check their units and offsets"));
+}
+
+TEST(VoxeliseParts, EndsBetweenPartsWhenAsked) {
+  const std::vector<PatientBody> bodies(3, BoxOf({0.1, 0.1, 0.1}, Eigen::Vector3d::Zero()));
+  int asked = 0;
+  const auto parts = VoxeliseParts(bodies, [&] { return ++asked < 2 ? absl::OkStatus() : absl::CancelledError(""); });
+  EXPECT_TRUE(absl::IsCancelled(parts.status())) << parts.status();
+  EXPECT_EQ(asked, 2);
+}
+
 TEST(VoxeliseParts, KeepsVolumes) {
   v1::Anatomy rib;
   rib.set_structure(v1::STRUCTURE_RIB);

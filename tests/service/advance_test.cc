@@ -52,6 +52,15 @@ class AdvanceTest : public ServerFixture {
     EXPECT_TRUE(Call(*sessions_, &Sessions::GetSession, "session_id: '" + id + "'", &got).ok());
     return got.session().tick();
   }
+  // Waits until the session takes no more steps. Returns its tick.
+  std::int64_t AwaitStandstill(const std::string& id) {
+    std::int64_t before = -1, now = 0;
+    for (; now > before; now = Tick(id)) {
+      before = now;
+      absl::SleepFor(absl::Seconds(1));
+    }
+    return now;
+  }
   static void ExpectError(const grpc::Status& status, grpc::StatusCode code, const std::string& part) {
     EXPECT_EQ(status.error_code(), code) << status.error_message();
     EXPECT_THAT(status.error_message(), HasSubstr(part));
@@ -110,12 +119,7 @@ TEST_F(AdvanceTest, AClientThatDoesNotReadStopsTheSessionAndLosesNothing) {
       stream.Send("session_id: 's' ticks: 1 read: [STATE_PART_POSITIONS, STATE_PART_VELOCITIES, STATE_PART_BODIES]");
     }
   });
-  std::int64_t before = -1, now = 0;
-  for (; now > before; now = Tick("s")) {
-    before = now;
-    absl::SleepFor(absl::Seconds(1));
-  }
-  EXPECT_LT(now, kRequests / 2) << "the server went on while nothing was read";
+  EXPECT_LT(AwaitStandstill("s"), kRequests / 2) << "the server went on while nothing was read";
   for (int i = 1; i <= kRequests; ++i) {
     v1::AdvanceResponse answer;
     ASSERT_TRUE(stream.Read(&answer)) << i;

@@ -23,7 +23,8 @@ double EdgeLengthOf(const v1::Scene& scene) {
 // The derived meshes of one scene, made when the first is asked for.
 class DerivedScene {
  public:
-  DerivedScene(BodySource source, v1::Scene scene) : source_(std::move(source)), scene_(std::move(scene)) {}
+  DerivedScene(BodySource source, v1::Scene scene, GoOn go_on)
+      : source_(std::move(source)), scene_(std::move(scene)), go_on_(std::move(go_on)) {}
 
   absl::StatusOr<Mesh> Get(const v1::Body& body) ABSL_LOCKS_EXCLUDED(mutex_) {
     if (!body.has_derived()) return source_(body);
@@ -45,21 +46,21 @@ class DerivedScene {
   absl::StatusOr<DerivedThorax> Derive() const {
     const absl::StatusOr<std::vector<PatientBody>> surfaces = ReadSurfaces(source_, scene_);
     if (!surfaces.ok()) return surfaces.status();
-    return DeriveThorax(*surfaces, EdgeLengthOf(scene_));
+    return DeriveThorax(*surfaces, EdgeLengthOf(scene_), go_on_);
   }
 
   const BodySource source_;
   const v1::Scene scene_;
+  const GoOn go_on_;
   absl::Mutex mutex_;
   std::optional<absl::StatusOr<DerivedThorax>> thorax_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace
 
-BodySource WithDerived(BodySource source, v1::Scene scene) {
-  return [derived = std::make_shared<DerivedScene>(std::move(source), std::move(scene))](const v1::Body& body) {
-    return derived->Get(body);
-  };
+BodySource WithDerived(BodySource source, v1::Scene scene, GoOn go_on) {
+  return [derived = std::make_shared<DerivedScene>(std::move(source), std::move(scene), std::move(go_on))](
+             const v1::Body& body) { return derived->Get(body); };
 }
 
 }  // namespace phrenic::imaging

@@ -9,9 +9,9 @@ namespace phrenic::imaging {
 // Returns a source that makes derived bodies of `scene` from the others, which it takes from `source`, and passes on
 // all other bodies. The first derived body takes a second or two and keeps what is made for the others: the inner cage
 // and the diaphragm. INVALID_ARGUMENT if a body's anatomy cannot be derived; the errors of ReadSurfaces and
-// DeriveThorax. Thread-safe if `source`
-// is.
-BodySource WithDerived(BodySource source, v1::Scene scene);
+// DeriveThorax, and of `go_on`. Thread-safe if `source` and
+// `go_on` are.
+BodySource WithDerived(BodySource source, v1::Scene scene, GoOn go_on = AlwaysGoOn);
 
 }  // namespace phrenic::imaging
 

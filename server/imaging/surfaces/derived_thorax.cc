@@ -68,16 +68,19 @@ absl::StatusOr<std::vector<PatientBody>> ReadSurfaces(const BodySource& source, 
   return surfaces;
 }
 
-absl::StatusOr<DerivedThorax> DeriveThorax(const std::vector<PatientBody>& surfaces, double edge_length) {
-  const absl::StatusOr<VoxelisedParts> voxelised = VoxeliseParts(surfaces);
+absl::StatusOr<DerivedThorax> DeriveThorax(const std::vector<PatientBody>& surfaces, double edge_length,
+                                           const GoOn& go_on) {
+  const absl::StatusOr<VoxelisedParts> voxelised = VoxeliseParts(surfaces, go_on);
   if (!voxelised.ok()) return voxelised.status();
   DerivedThorax thorax;
   const auto frame = FindCageFrame(voxelised->volume, voxelised->parts, thorax.fallbacks);
   if (!frame.ok()) return frame.status();
   thorax.frame = *frame;
+  if (absl::Status status = go_on(); !status.ok()) return status;
   const FittedCage cage(voxelised->volume, voxelised->parts, *frame, thorax.fallbacks);
   thorax.cage = cage.Tube();
   thorax.cage.vertices *= kMillimetre;
+  if (absl::Status status = go_on(); !status.ok()) return status;
   DiaphragmOptions options;
   options.vertices = 0;
   options.middle_edge_length = edge_length;
@@ -85,6 +88,7 @@ absl::StatusOr<DerivedThorax> DeriveThorax(const std::vector<PatientBody>& surfa
   if (!diaphragm.ok()) return diaphragm.status();
   thorax.diaphragm = *std::move(diaphragm);
   if (surfaces.back().anatomy.structure() != v1::STRUCTURE_DIAPHRAGM) return thorax;
+  if (absl::Status status = go_on(); !status.ok()) return status;
   Mesh& middle = thorax.diaphragm.middle;
   const Mesh before = FollowScan(voxelised->volume, voxelised->parts.back().mask, thorax.cage, middle);
   thorax.diaphragm.mesh = surfaces.back().mesh;

@@ -11,6 +11,7 @@
 #include "server/imaging/cage_frame.h"
 #include "server/imaging/derived_diaphragm.h"
 #include "server/imaging/patient/patient_body.h"
+#include "server/imaging/surfaces/voxelised_parts.h"
 
 namespace phrenic::imaging {
 
@@ -36,8 +37,9 @@ struct DerivedThorax {
 };
 
 // Derives both from surfaces. `edge_length` is that of the middle surface [mm]. The errors of VoxeliseParts,
-// FindCageFrame and DeriveDiaphragm. Takes a second or two.
-absl::StatusOr<DerivedThorax> DeriveThorax(const std::vector<PatientBody>& surfaces, double edge_length);
+// FindCageFrame and DeriveDiaphragm, and of `go_on`, which is asked before each part and stage. Takes a second or two.
+absl::StatusOr<DerivedThorax> DeriveThorax(const std::vector<PatientBody>& surfaces, double edge_length,
+                                           const GoOn& go_on = AlwaysGoOn);
 
 }  // namespace phrenic::imaging
 

@@ -35,8 +35,8 @@ class VoxelsOf {
   const Eigen::Affine3d to_voxel_;
 };
 
-// Returns how far along the normal the middle of the part is that is nearest to the point [mm]; nullopt if there is
-// none.
+// Returns how far along the normal the middle of the part is that is nearest to the point [mm]; nullopt if the
+// part is not within reach.
 std::optional<double> MiddleAlong(const VoxelsOf& part, const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {
   std::optional<double> nearest;
   double entered = std::numeric_limits<double>::quiet_NaN();

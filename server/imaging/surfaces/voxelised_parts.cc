@@ -13,11 +13,19 @@ namespace {
 constexpr double kVoxel = 1.5;       // [mm]
 constexpr double kMostOfGrid = 2e7;  // voxels
 constexpr double kMostOfParts = 2e8;
-constexpr double kFree = 6;  // free voxels around what is voxelised
+constexpr double kFree = 6;          // free voxels around what is voxelised
+constexpr double kLargest = 3000;    // extent of all surfaces together [mm]
+constexpr double kMarginOfMask = 3;  // voxels
 
-// Returns an empty grid around the box [mm].
+// Returns the number of voxels of this size [mm] that the sizes [mm] need, with a margin along each axis.
+double VoxelsOf(const Eigen::Vector3d& sizes, double voxel, double margin) {
+  return ((sizes / voxel).array().ceil() + margin).prod();
+}
+
+// Returns an empty grid around the box [mm]. Flat boxes too have at most kMostOfGrid voxels.
 LabelVolume GridAround(const Eigen::AlignedBox3d& box) {
-  const double voxel = std::max(kVoxel, std::cbrt(box.volume() / kMostOfGrid));
+  double voxel = kVoxel;
+  while (VoxelsOf(box.sizes(), voxel, 2 * kFree) > kMostOfGrid) voxel *= 1.02;
   LabelVolume volume;
   volume.size = (box.sizes() / voxel).array().ceil().cast<int>() + static_cast<int>(2 * kFree);
   volume.to_patient.linear() = voxel * Eigen::Matrix3d::Identity();
@@ -49,7 +57,7 @@ Mask MaskOf(const Mesh& mesh, const LabelVolume& volume) {
 
 }  // namespace
 
-absl::StatusOr<VoxelisedParts> VoxeliseParts(const std::vector<PatientBody>& bodies) {
+absl::StatusOr<VoxelisedParts> VoxeliseParts(const std::vector<PatientBody>& bodies, const GoOn& go_on) {
   Eigen::AlignedBox3d box;
   double voxels = 0;
   for (const PatientBody& body : bodies) {
@@ -57,15 +65,22 @@ absl::StatusOr<VoxelisedParts> VoxeliseParts(const std::vector<PatientBody>& bod
       return absl::InvalidArgumentError(absl::StrCat("body \"", body.name, "\": has no triangles to enclose a part"));
     }
     const Eigen::AlignedBox3d own = BoxAround(body.mesh.vertices);
-    if (!own.sizes().allFinite())
+    if (!own.sizes().allFinite()) {
       return absl::InvalidArgumentError(absl::StrCat("body \"", body.name, "\": is not finite"));
+    }
     box.extend(own);
   }
   if (bodies.empty()) return absl::InvalidArgumentError("there are no surfaces from which to derive others");
+  if (box.sizes().maxCoeff() > kLargest) {
+    return absl::InvalidArgumentError(absl::StrCat("the surfaces from which others are derived extend over ",
+                                                   box.sizes().maxCoeff(), " mm, and a thorax is smaller than ",
+                                                   kLargest, ": check their units and offsets"));
+  }
   VoxelisedParts voxelised{GridAround(box), {}};
   const double voxel = voxelised.volume.Spacing().x();
   for (const PatientBody& body : bodies) {
-    voxels += (BoxAround(body.mesh.vertices).sizes() / voxel).array().ceil().prod();
+    if (absl::Status status = go_on(); !status.ok()) return status;
+    voxels += VoxelsOf(BoxAround(body.mesh.vertices).sizes(), voxel, kMarginOfMask);
     if (voxels > kMostOfParts) return absl::ResourceExhaustedError("too many large surfaces to derive others from");
     Part& part = voxelised.parts.emplace_back();
     part.name = body.name;

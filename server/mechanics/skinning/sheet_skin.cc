@@ -70,9 +70,9 @@ SheetBinder::SheetBinder(const ModelBuilder& builder, const Triangles& triangles
   }
 }
 
-bool SheetBinder::FindFoot(const Eigen::Vector3i& triangle, const Eigen::Vector3d& point, double share,
+bool SheetBinder::FindFoot(const Eigen::Vector3i& triangle, const Eigen::Vector3d& point, double fraction,
                            TriangleBinding& foot) const {
-  const int rounds = static_cast<int>(60 / share);
+  const int rounds = static_cast<int>(60 / fraction);
   constexpr double kSettled = 1e-13;
   const Points& x = builder_.model.rest;
   const Eigen::Vector3d a = x.col(triangle[0]), u = x.col(triangle[1]) - a, v = x.col(triangle[2]) - a;
@@ -82,7 +82,7 @@ bool SheetBinder::FindFoot(const Eigen::Vector3i& triangle, const Eigen::Vector3
     const Eigen::Vector3d in_basis = InBasis(u, v, (normals * foot.weights).normalized(), point - a);
     const Eigen::Vector3d weights(1 - in_basis[0] - in_basis[1], in_basis[0], in_basis[1]);
     const double change = (weights - foot.weights).cwiseAbs().maxCoeff();
-    foot.weights = share == 1 ? weights : Eigen::Vector3d(foot.weights + share * (weights - foot.weights));
+    foot.weights = fraction == 1 ? weights : Eigen::Vector3d(foot.weights + fraction * (weights - foot.weights));
     foot.height = in_basis[2];
     if (change < kSettled) return true;
     if (!std::isfinite(change)) return false;
@@ -98,10 +98,10 @@ TriangleBinding SheetBinder::Foot(const Eigen::Vector3d& point) const {
   bool found = FindFoot(triangle, point, 1, best);
   if (found && best.weights.minCoeff() >= kOutside) return best;
   // Where the surface is bent too sharply for the iteration, it may still converge by a part of each step.
-  for (const double share : {1.0, 0.25}) {
+  for (const double fraction : {1.0, 0.25}) {
     for (const int vertex : triangle) {
       for (const int t : fans_[vertex - sheet_->first_vertex]) {
-        if (!FindFoot(tree_.triangle(t), point, share, foot) || (found && !Better(foot, best))) continue;
+        if (!FindFoot(tree_.triangle(t), point, fraction, foot) || (found && !Better(foot, best))) continue;
         best = foot;
         found = true;
       }

@@ -31,9 +31,9 @@ class SheetBinder {
 
  private:
   SheetBinder(const ModelBuilder& builder, const Triangles& triangles);
-  // Returns false if the search for the foot point on this triangle's plane, by `share` of each step of a fixed-point
-  // iteration, does not converge.
-  bool FindFoot(const Eigen::Vector3i& triangle, const Eigen::Vector3d& point, double share,
+  // Returns false if the search for the foot point on this triangle's plane, by `fraction` of each step of a
+  // fixed-point iteration, does not converge.
+  bool FindFoot(const Eigen::Vector3i& triangle, const Eigen::Vector3d& point, double fraction,
                 TriangleBinding& foot) const;
   // Returns the binding with the foot point inside a triangle, or nearest to inside; no corners if there is no
   // triangle.
