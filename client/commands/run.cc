@@ -90,15 +90,25 @@ grpc::Status CreateRunSession(const Context& context, const RunOptions& options,
   return Call(context, stub, &v1::SessionService::Stub::GetSession, get, session);
 }
 
+// Sets the times that the options leave open: a surface is exported at the end of the run, a motion over the whole run,
+// and a page plays the last whole breath, or the second one of a run that is too short for two.
+void ChooseTimes(const RunOptions& options, const record::Format& format, double breath_length, MotionOptions& motion) {
+  if (format.page) {
+    const double breaths = std::floor(options.seconds / breath_length + 1e-9);
+    if (!motion.start && breaths >= 2) motion.start = (breaths - 1) * breath_length;
+    return;
+  }
+  if (format.instant && !motion.start) motion.start = options.seconds;
+  if (!format.instant) motion.seconds = options.seconds - motion.start.value_or(0);
+}
+
 // Sets `session` to the state at the end.
 int ExportRun(const Context& context, const RunOptions& options, service::Server& server, v1::Session* session,
               RunCost* cost) {
   MotionOptions motion = options.motion;
   const auto format = record::FindFormat(session::ExportFormats(), FormatOf(motion.file));
   if (!format.ok()) return Fail(format.status());
-  // By default a surface is exported at the end of the run and a motion over the whole run.
-  if (format->instant && !motion.start) motion.start = options.seconds;
-  if (!format->instant) motion.seconds = options.seconds - motion.start.value_or(0);
+  ChooseTimes(options, *format, session->parameters().breath_length(), motion);
   const auto request = MakeExportRequest("run", motion);
   if (!request.ok()) return Fail(request.status());
   v1::ExportSummary summary;

@@ -84,7 +84,7 @@ absl::StatusOr<v1::CreateExportRequest> MakeExportRequest(const std::string& ses
   if (!format.ok()) return format.status();
   // The files in an archive name each other, so they need the final name.
   if (format->ending == kArchive) request.set_file_stem(std::filesystem::path(options.file).stem().string());
-  request.set_seconds(options.seconds.value_or(format->instant ? 0 : kSeconds));
+  request.set_seconds(options.seconds.value_or(format->instant || format->page ? 0 : kSeconds));
   if (options.start) request.set_start(*options.start);
   if (options.frames_per_second) request.set_frames_per_second(*options.frames_per_second);
   if (options.steps_per_frame > 0) request.set_steps_per_frame(options.steps_per_frame);

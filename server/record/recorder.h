@@ -81,6 +81,8 @@ struct Format {
   double frames_a_breath = 0;  // default frames per breath; 0: the default frame rate applies
   bool numbers_only = false;   // only columns, no bodies
   bool instant = false;        // only the last frame
+  // A page that plays the motion (session/export/page_writer.h): every body, by default one breath. `make` is empty.
+  bool page = false;
   std::function<std::unique_ptr<Recorder>(Settings settings)> make = {};
 };
 

@@ -40,6 +40,7 @@ grpc::Status ExportService::ListFormats(grpc::CallbackServerContext* context, co
     for (const record::Values values : format.values) listed.add_values(ToProto(values));
     listed.set_frames_a_breath(format.frames_a_breath);
     listed.set_numbers_only(format.numbers_only);
+    listed.set_page(format.page);
   }
   return grpc::Status::OK;
 }

@@ -123,7 +123,7 @@ struct Server::Parts {
         control_service(table, guard),
         access_service(guard, table),
         frame_service(table, guard, metrics, options.limits),
-        exports(options.limits, options.spool_dir, clock, store.get()),
+        exports(options.limits, options.spool_dir, clock, store.get(), options.web_root + "/offline.html"),
         export_service(table, exports, guard),
         upload_service(uploads, options.limits, guard),
         study_service(models, options.web_root, guard, clock, options.limits, store.get()),

@@ -1,10 +1,20 @@
 #include "server/session/export/exporter.h"
 
 #include <gmock/gmock.h>
+#include <zstd.h>
 
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "phrenic/v1/offline.pb.h"
 #include "server/crypto/sha256.h"
 #include "server/mechanics/state.h"
 #include "server/session/export/export_catalogue.h"
+#include "server/session/export/page_writer.h"
+#include "server/stream/codecs/zstd.h"
 #include "tests/compile_text.h"
 #include "tests/small_scenes.h"
 
@@ -23,7 +33,7 @@ class ExporterTest : public testing::Test {
 
   absl::StatusOr<v1::ExportSummary> Export() {
     const Fork fork = {model_->parameters, model_->InitialState()};
-    const auto plan = PlanExport(request_, *model_, fork, testing::TempDir());
+    const auto plan = PlanExport(request_, *model_, fork, testing::TempDir(), page_);
     if (!plan.ok()) return plan.status();
     auto spool = record::SpoolFile::Open(testing::TempDir());
     EXPECT_TRUE(spool.ok()) << spool.status();
@@ -40,7 +50,28 @@ class ExporterTest : public testing::Test {
     return std::string(refused.status().message());
   }
 
+  // Writes a template of pages.
+  static std::string WriteTemplate() {
+    const std::string path = testing::TempDir() + "/offline.html";
+    std::ofstream(path) << "<p>before</p>__PHRENIC_MOTION__<p>after</p>";
+    return path;
+  }
+
+  // Reads the motion in file_ back, as a page does.
+  v1::OfflineMotion Motion() const {
+    const std::size_t first = file_.find("</p>") + 4, last = file_.rfind("<p>");
+    std::string compressed;
+    EXPECT_TRUE(absl::Base64Unescape(file_.substr(first, last - first), &compressed));
+    const auto size = ZSTD_getFrameContentSize(compressed.data(), compressed.size());
+    const auto bytes = stream::Decompress(compressed, static_cast<std::size_t>(size));
+    EXPECT_TRUE(bytes.ok()) << bytes.status();
+    v1::OfflineMotion motion;
+    EXPECT_TRUE(bytes.ok() && motion.ParseFromString(*bytes));
+    return motion;
+  }
+
   std::shared_ptr<const Model> model_ = CompileText(kTriangle);
+  std::string page_ = WriteTemplate();
   v1::CreateExportRequest request_;
   std::string file_;
   ExportProgress progress_ = [](double, double) { return absl::OkStatus(); };
@@ -51,6 +82,7 @@ TEST_F(ExporterTest, TheSummaryDescribesTheFile) {
     request_.set_format(format.name);
     request_.clear_start();
     if (format.instant) request_.set_start(1);
+    if (format.page) request_.set_start(0);
     request_.set_seconds(format.instant ? 0 : 1);
     request_.clear_frames_per_second();
     if (format.frames_a_breath > 0) request_.set_frames_per_second(10);
@@ -130,6 +162,50 @@ TEST_F(ExporterTest, BodiesAreChosenByNameOrLayer) {
   const auto summary = Export();
   ASSERT_TRUE(summary.ok()) << summary.status();
   EXPECT_EQ(summary->vertices(), 5);
+}
+
+TEST_F(ExporterTest, APageHasTheWholeSceneOverOneBreathAfterTheFirst) {
+  request_.set_format("html");
+  request_.set_seconds(0);
+  const auto summary = Export();
+  ASSERT_TRUE(summary.ok()) << summary.status();
+  EXPECT_THAT(file_, testing::StartsWith("<p>before</p>"));
+  EXPECT_THAT(file_, testing::EndsWith("<p>after</p>"));
+  EXPECT_EQ(file_.find("PHRENIC"), std::string::npos);
+  const v1::OfflineMotion motion = Motion();
+  const double breath = model_->parameters.breath_length();
+  EXPECT_EQ(motion.scene(), model_->scene.name());
+  EXPECT_EQ(motion.parameters().breath_length(), breath);
+  EXPECT_EQ(motion.bodies_size(), static_cast<int>(model_->bodies.size()));
+  ASSERT_EQ(motion.frames_size(), 81);
+  const double step = model_->parameters.time_step();
+  EXPECT_NEAR(motion.frames(0).time(), breath, step);
+  EXPECT_NEAR(motion.frames(80).time(), 2 * breath, step);
+  for (const v1::Frame& frame : motion.frames()) {
+    EXPECT_EQ(frame.codec(), v1::CODEC_PREDICTED);
+    EXPECT_EQ(frame.max_error_mm(), 0.1) << "a small scene has the finest bound";
+    EXPECT_EQ(frame.measures_size(), static_cast<int>(model_->measures.size()));
+  }
+}
+
+TEST_F(ExporterTest, EqualRunsHaveEqualPages) {
+  request_.set_format("html");
+  request_.set_seconds(0.5);
+  ASSERT_TRUE(Export().ok());
+  const std::string first = file_;
+  ASSERT_TRUE(Export().ok());
+  EXPECT_EQ(file_, first);
+}
+
+TEST_F(ExporterTest, APageIsRefusedWithoutTheViewerAndWithChosenBodies) {
+  request_.set_format("html");
+  request_.add_bodies("post");
+  EXPECT_THAT(Refusal(), HasSubstr("bodies: html has every body"));
+  request_.clear_bodies();
+  page_ = testing::TempDir() + "/nowhere.html";
+  const auto refused = Export();
+  EXPECT_TRUE(absl::IsNotFound(refused.status())) << refused.status();
+  EXPECT_THAT(std::string(refused.status().message()), HasSubstr("npm run build"));
 }
 
 TEST_F(ExporterTest, ADivergenceEndsTheExportWithItsReason) {

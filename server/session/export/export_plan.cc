@@ -16,6 +16,7 @@
 #include "server/mesh/units.h"
 #include "server/record/spool_file.h"
 #include "server/session/export/export_catalogue.h"
+#include "server/session/export/page_writer.h"
 #include "server/session/run.h"
 
 namespace phrenic::session {
@@ -48,8 +49,21 @@ absl::StatusOr<std::vector<int>> Bodies(const Model& model, const v1::CreateExpo
   return bodies;
 }
 
+absl::Status ChooseAllBodies(const v1::CreateExportRequest& request, const Model& model, ExportPlan& plan) {
+  if (!request.bodies().empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("bodies: ", plan.format.name, " has every body of the scene; leave the field out"));
+  }
+  for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body) {
+    plan.bodies.push_back(body);
+    plan.vertices += model.bodies[body].mesh.vertices.cols();
+  }
+  return absl::OkStatus();
+}
+
 // Chooses bodies, or columns of numbers, whichever the format holds.
 absl::Status ChooseContent(const v1::CreateExportRequest& request, const Model& model, ExportPlan& plan) {
+  if (plan.format.page) return ChooseAllBodies(request, model, plan);
   if (!plan.format.numbers_only) {
     auto bodies = Bodies(model, request);
     if (!bodies.ok()) return bodies.status();
@@ -89,9 +103,19 @@ absl::Status ChooseStem(const v1::CreateExportRequest& request, ExportPlan& plan
                    " letters, digits, \".\", \"_\" and \"-\", and does not begin with a dot"));
 }
 
+// Returns the time at which the first whole breath begins, at least one breath after the start of the run [s].
+double NextBreath(const Fork& fork) {
+  const double phase = std::max(1.0, std::ceil(fork.state.phase - kTimeTolerance));
+  return fork.state.time + (phase - fork.state.phase) * fork.parameters.breath_length();
+}
+
 absl::Status ChooseTimes(const v1::CreateExportRequest& request, const Fork& fork, ExportPlan& plan) {
   plan.start = request.has_start() ? request.start() : fork.state.time;
   plan.seconds = request.seconds();
+  if (plan.format.page && plan.seconds == 0) {
+    plan.seconds = fork.parameters.breath_length();
+    if (!request.has_start()) plan.start = NextBreath(fork);
+  }
   if (plan.start < fork.state.time - kTimeTolerance) {
     return absl::InvalidArgumentError(absl::StrFormat(
         "start: %g s is past, the session is at %g s; reset it, or choose a later time", plan.start, fork.state.time));
@@ -132,12 +156,16 @@ std::int64_t Estimate(const Model& model, const v1::Parameters& parameters, cons
 }  // namespace
 
 absl::StatusOr<ExportPlan> PlanExport(const v1::CreateExportRequest& request, const Model& model, const Fork& fork,
-                                      const std::string& spool_folder) {
+                                      const std::string& spool_folder, const std::string& page_template) {
   auto format = record::FindFormat(ExportFormats(), request.format());
   if (!format.ok()) return format.status();
   ExportPlan plan;
   plan.format = *std::move(format);
   plan.spool_folder = spool_folder;
+  if (plan.format.page) {
+    plan.page_template = page_template;
+    if (const auto page = ReadPageTemplate(page_template); !page.ok()) return page.status();
+  }
   if (absl::Status status = ChooseContent(request, model, plan); !status.ok()) return status;
   if (absl::Status status = ChooseValues(request, plan); !status.ok()) return status;
   if (absl::Status status = ChooseStem(request, plan); !status.ok()) return status;

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "server/mechanics/constraint_residual.h"
-#include "server/mechanics/skinning/body_points.h"
 #include "server/mechanics/state_warnings.h"
-#include "server/record/recorder.h"
 #include "server/schema/thread_cpu.h"
+#include "server/session/export/body_writer.h"
+#include "server/session/export/page_writer.h"
 #include "server/session/run.h"
 
 namespace phrenic::session {
@@ -25,18 +25,15 @@ constexpr double kRecordingShare = 0.5;  // of the work, for a format that write
 // One export in progress. Not thread-safe.
 class MotionExport {
  public:
-  MotionExport(const ExportPlan& plan, const Model& model, Run& run, record::Recorder& recorder,
-               const ExportProgress& progress)
-      : plan_(plan), model_(model), run_(run), recorder_(recorder), progress_(progress), begin_(run.state().time) {
-    positions_.resize(3, plan.vertices);
-  }
+  MotionExport(const ExportPlan& plan, Run& run, MotionWriter& writer, const ExportProgress& progress)
+      : plan_(plan), model_(run.model()), run_(run), writer_(writer), progress_(progress), begin_(run.state().time) {}
 
   absl::Status Record() {
     if (absl::Status status = StepTo(plan_.start); !status.ok()) return status;
     if (absl::Status status = Begin(); !status.ok()) return status;
     absl::Status recorded = plan_.steps_per_frame > 0 ? RecordBySteps() : RecordByTime();
     if (!recorded.ok()) return recorded;
-    return recorder_.End([this](double share) {
+    return writer_.End([this](double share) {
       if (Wall::now() < last_report_ + kBetweenReports) return absl::OkStatus();
       last_report_ = Wall::now();
       return progress_(kRecordingShare + (1 - kRecordingShare) * share, plan_.seconds);
@@ -45,7 +42,7 @@ class MotionExport {
 
   void FillSummary(v1::ExportSummary& summary) const {
     summary.set_frames(frames_);
-    summary.set_vertices(positions_.cols());
+    summary.set_vertices(writer_.vertices());
     summary.set_steps(steps_);
     summary.set_simulated_seconds(run_.state().time - begin_);
     summary.set_step_wall_seconds(step_wall_);
@@ -73,37 +70,15 @@ class MotionExport {
   }
 
   absl::Status Begin() {
-    PlaceBodies();
-    record::Recording recording;
-    Eigen::Index first = 0;
-    for (const int body : plan_.bodies) {
-      recording.bodies.push_back({model_.bodies[body].name, model_.bodies[body].mesh});
-      Points& vertices = recording.bodies.back().mesh.vertices;
-      vertices = positions_.middleCols(first, vertices.cols());
-      first += vertices.cols();
-    }
-    if (plan_.format.numbers_only) recording.columns = ColumnsOf(model_);
-    if (absl::Status status = recorder_.Begin(recording); !status.ok()) return status;
+    if (absl::Status status = writer_.Begin(run_); !status.ok()) return status;
     return AddFrame();
   }
 
-  void PlaceBodies() {
-    Eigen::Index first = 0;
-    for (const int body : plan_.bodies) {
-      const Eigen::Index count = model_.bodies[body].mesh.vertices.cols();
-      PlaceBody(model_, run_.state(), body, positions_.middleCols(first, count));
-      first += count;
-    }
-  }
-
   absl::Status AddFrame() {
-    PlaceBodies();
     ++frames_;
     worst_ = WorstResidual();
     if (motion_warnings_.empty()) motion_warnings_ = MotionWarnings(model_, run_.state());
-    std::vector<double> numbers;
-    if (plan_.format.numbers_only) numbers = NumbersAt(model_, run_.parameters(), run_.state());
-    return recorder_.AddFrame({run_.state().time, positions_, numbers});
+    return writer_.AddFrame(run_);
   }
 
   absl::Status RecordByTime() {
@@ -159,10 +134,9 @@ class MotionExport {
   const ExportPlan& plan_;
   const Model& model_;
   Run& run_;
-  record::Recorder& recorder_;
+  MotionWriter& writer_;
   const ExportProgress& progress_;
-  const double begin_;  // simulated time at which stepping began [s]
-  Points positions_;
+  const double begin_;                        // simulated time at which stepping began [s]
   ConstraintResidual worst_;                  // of the frames
   std::vector<std::string> motion_warnings_;  // of the first frame that has some
   Wall::time_point last_report_ = Wall::now();
@@ -170,16 +144,24 @@ class MotionExport {
   double step_wall_ = 0, step_cpu_ = 0;
 };
 
+// Returns the writer of the plan's format. NOT_FOUND if the format is a page and the viewer is not built.
+absl::StatusOr<std::unique_ptr<MotionWriter>> MakeWriter(const ExportPlan& plan,
+                                                         const std::shared_ptr<const Model>& model, ExportFile& file) {
+  const record::Sink sink = [&file](std::string_view bytes) { return file.Append(bytes); };
+  if (!plan.format.page) return std::make_unique<BodyWriter>(plan, sink);
+  absl::StatusOr<std::string> page = ReadPageTemplate(plan.page_template);
+  if (!page.ok()) return page.status();
+  return std::make_unique<PageWriter>(model, *std::move(page), sink);
+}
+
 }  // namespace
 
 absl::StatusOr<v1::ExportSummary> ExportMotion(const ExportPlan& plan, const std::shared_ptr<const Model>& model,
                                                Fork fork, ExportFile& file, const ExportProgress& progress) {
-  const auto recorder = plan.format.make({.sink = [&file](std::string_view bytes) { return file.Append(bytes); },
-                                          .values = plan.values,
-                                          .stem = plan.file_stem,
-                                          .spool_folder = plan.spool_folder});
+  const auto writer = MakeWriter(plan, model, file);
+  if (!writer.ok()) return writer.status();
   Run run(model, std::move(fork.parameters), std::move(fork.state));
-  MotionExport work(plan, *model, run, *recorder, progress);
+  MotionExport work(plan, run, **writer, progress);
   if (absl::Status status = work.Record(); !status.ok()) return status;
   v1::ExportSummary summary;
   work.FillSummary(summary);

@@ -19,9 +19,11 @@ static_assert(static_cast<int>(jobs::State::kRunning) == v1::EXPORT_STATE_RUNNIN
 static_assert(static_cast<int>(jobs::State::kDone) == v1::EXPORT_STATE_DONE);
 static_assert(static_cast<int>(jobs::State::kFailed) == v1::EXPORT_STATE_FAILED);
 
-Exports::Exports(const Limits& limits, std::string spool_folder, const Clock& clock, store::Store* store)
+Exports::Exports(const Limits& limits, std::string spool_folder, const Clock& clock, store::Store* store,
+                 std::string page_template)
     : vertices_(limits.vertices),
       spool_folder_(std::move(spool_folder)),
+      page_template_(std::move(page_template)),
       clock_(clock),
       queue_({.noun = {"export", "exports", "an"},
               .threads = limits.exports,
@@ -31,7 +33,7 @@ Exports::Exports(const Limits& limits, std::string spool_folder, const Clock& cl
              clock, jobs::Records(kExportRecord, store)) {}
 
 absl::StatusOr<std::shared_ptr<ExportJob>> Exports::MakeJob(const v1::CreateExportRequest& request, Start start) const {
-  auto plan = PlanExport(request, *start.model, start.fork, spool_folder_);
+  auto plan = PlanExport(request, *start.model, start.fork, spool_folder_, page_template_);
   if (!plan.ok()) return plan.status();
   auto file = record::SpoolFile::Open(spool_folder_);
   if (!file.ok()) return file.status();

@@ -30,7 +30,9 @@ class Exports {
   using Seen = jobs::Queue<ExportJob>::Seen;
 
   // `clock` and `store` outlive it. A null store keeps nothing. Spool files are unnamed and lie in `spool_folder`.
-  Exports(const Limits& limits, std::string spool_folder, const Clock& clock, store::Store* store = nullptr);
+  // `page_template` is the path of the viewer's offline.html.
+  Exports(const Limits& limits, std::string spool_folder, const Clock& clock, store::Store* store = nullptr,
+          std::string page_template = "");
 
   // Queues the exports of an earlier server again, which make the same files. `account_of` gives the present name of
   // the account that the record names. `lost` gets the reason why one could not be restored, by "export ID". Requires:
@@ -68,6 +70,7 @@ class Exports {
 
   const std::int64_t vertices_;  // Limits::vertices
   const std::string spool_folder_;
+  const std::string page_template_;
   const Clock& clock_;
   jobs::Queue<ExportJob> queue_;
 };

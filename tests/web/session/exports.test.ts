@@ -1,6 +1,6 @@
 import { create } from "@bufbuild/protobuf";
 import { Code, ConnectError, createRouterTransport } from "@connectrpc/connect";
-import { beforeEach, expect, test } from "vitest";
+import { beforeEach, expect, test, vi } from "vitest";
 import { createApi } from "../../../web/src/connection/api";
 import {
   type CreateExportRequest,
@@ -12,6 +12,7 @@ import {
 import { UploadService } from "../../../web/src/gen/phrenic/v1/upload_pb";
 import type { Body } from "../../../web/src/geometry/bodies";
 import { exportPanel } from "../../../web/src/panels/jobs/export_panel";
+import { takeHomeRow } from "../../../web/src/panels/jobs/take_home";
 import { uploadPanel } from "../../../web/src/panels/jobs/upload_panel";
 import { Exports } from "../../../web/src/session/exports";
 import { Uploads } from "../../../web/src/session/uploads";
@@ -28,6 +29,7 @@ const api = createApi(
         formats: [
           create(FileFormatSchema, { name: "msh", values: [ExportValues.DISPLACEMENTS, ExportValues.POSITIONS] }),
           create(FileFormatSchema, { name: "stl", instant: true }),
+          create(FileFormatSchema, { name: "html", page: true }),
         ],
       }),
       createExport: (request) => {
@@ -95,6 +97,29 @@ test("AnExportIsRecordedDownloadedAndDeleted", async () => {
   for (const each of document.querySelectorAll<HTMLInputElement | HTMLSelectElement>("input, select")) {
     expect(each.labels?.length, each.id).toBe(1);
   }
+});
+
+test("APageHasOneBreathOfEveryBody", async () => {
+  const exports = new Exports(api, "class");
+  await exports.loadFormats();
+  document.body.replaceChildren(exportPanel(exports, new Signal<Body[]>([])));
+  exports.choose({ format: "html", seconds: 9, bodies: ["lung"] });
+  const rowOf = (id: string) => byId(id).closest<HTMLElement>(".labelled-row")!;
+  expect([rowOf("export-seconds").hidden, rowOf("export-body").hidden]).toEqual([true, true]);
+  await exports.start();
+  expect(asked[0]).toMatchObject({ format: "html", seconds: 0, bodies: [] });
+});
+
+test("ABreathIsTakenHomeByOneButton", async () => {
+  const exports = new Exports(api, "class");
+  document.body.replaceChildren(takeHomeRow(exports));
+  let saved = "";
+  document.body.addEventListener("click", (event) => {
+    if (event.target instanceof HTMLAnchorElement) saved = event.target.download;
+  });
+  byId("take-home").click();
+  await vi.waitFor(() => expect(saved).toBe("class.msh"));
+  expect(asked[0]).toMatchObject({ format: "html", seconds: 0, bodies: [] });
 });
 
 test("AnInterruptedDownloadResumes", async () => {

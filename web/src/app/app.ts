@@ -15,6 +15,7 @@ import { ComparisonCard } from "../panels/comparison/comparison_card";
 import { distancePanel } from "../panels/comparison/distance_panel";
 import { presetComparison } from "../panels/comparison/preset_comparison";
 import { exportPanel } from "../panels/jobs/export_panel";
+import { takeHomeRow } from "../panels/jobs/take_home";
 import { studiesPanel } from "../panels/jobs/studies_panel";
 import { uploadPanel } from "../panels/jobs/upload_panel";
 import { parameterSections } from "../panels/parameters/parameter_sections";
@@ -36,6 +37,7 @@ import { Readout } from "../panels/view/readout";
 import { Timeline } from "../panels/view/timeline";
 import { viewBar } from "../panels/view/view_bar";
 import { CameraSharing } from "../session/camera_sharing";
+import { ClassAnswers } from "../session/class_answers";
 import { Comparisons } from "../session/comparisons";
 import { Exports } from "../session/exports";
 import { ForceQueries } from "../session/force_queries";
@@ -55,6 +57,7 @@ import { stageInsets } from "./insets";
 import { SceneTools } from "./scene_tools";
 import { SecondView } from "./second_view";
 import { type Shortcut, shortcuts } from "./shortcuts";
+import { skipLinks } from "./skip_links";
 import { StudentView } from "./student_view";
 import { testHook } from "./test_hook";
 
@@ -111,7 +114,7 @@ export class App {
     private readonly api: Api,
     private readonly target: PageTarget,
     private readonly chooser: SessionChooser,
-    identity: Identity,
+    private readonly identity: Identity,
     private readonly clock: Clock,
   ) {
     const { sessionId } = target;
@@ -168,8 +171,11 @@ export class App {
     return {
       advance: () => this.frames.advance(this.clock.now(), reduced.matches),
       frame: () => this.frames.displayed?.arrays,
-      beforeDraw: (arrays: NonNullable<FrameBuffer["arrays"]>) =>
-        this.tools.beforeDraw(this.frames.displayed?.time ?? 0, arrays),
+      beforeDraw: (arrays: NonNullable<FrameBuffer["arrays"]>) => {
+        const time = this.frames.displayed?.time ?? 0;
+        this.tools.beforeDraw(time, arrays);
+        if (!this.timeline.replaying) this.graphs.mMode.receive(time, arrays);
+      },
       afterDraw: (orientation: Parameters<Margins["show"]>[0]) => {
         this.margins.show(orientation);
         this.tools.afterDraw(orientation);
@@ -196,10 +202,14 @@ export class App {
   }
 
   private openStudentView(): StudentView {
-    const { controller, participation, presets, report, tools, layerStyles, secondView } = this;
-    const { open, view, lesson } = this.target;
+    const { controller, participation, presets, report, tools, layerStyles, secondView, identity } = this;
+    const { open, view, lesson, sessionId } = this.target;
+    const answers = new ClassAnswers(this.api, sessionId, identity);
     const shown = { tools, layerStyles, secondView, resized: () => this.resize() };
-    return new StudentView({ controller, participation, presets, report, lesson, open, ...shown }, view);
+    return new StudentView(
+      { controller, participation, presets, report, lesson, open, answers, identity, ...shown },
+      view,
+    );
   }
 
   private buildStage(): void {
@@ -262,7 +272,8 @@ export class App {
       const picture = await viewer.capture();
       if (picture !== null) download(`${sessionId}.png`, picture);
     };
-    const share = new ShareDialog({ controller, report, open, photograph: () => void photograph() });
+    const rows = [takeHomeRow(new Exports(this.api, sessionId))];
+    const share = new ShareDialog({ controller, report, open, photograph: () => void photograph(), rows });
     const { graphs, panel } = drawers(() => this.resize(), this.secondView !== undefined);
     const press = (id: string) => () => document.getElementById(id)?.click();
     const when = () => this.student.inLesson;
@@ -295,6 +306,7 @@ export class App {
       () => controller.redo(),
     );
     const control = new ControlDialog(this.participation, () => this.cameraSharing.follow());
+    document.body.prepend(skipLinks());
     document.body.append(share.element, keys, control.element);
     elementById("share-open").onclick = () => share.show();
     elementById("help-open").onclick = () => keys.showModal();
@@ -341,6 +353,7 @@ export class App {
     this.bodies.set(bodies);
     this.frames.start(bodies);
     this.graphs.clear();
+    this.graphs.mMode.start(bodies);
     this.report.set(report);
     this.tissue = new Set(report.bodies.filter(({ tissue }) => tissue).map(({ name }) => name));
     this.comparisons.choose({ body: this.mainBody(bodies) });

@@ -13,6 +13,15 @@ export function decompressExactly(frame: Uint8Array, size: number): Uint8Array {
   return bytes;
 }
 
+/** Decompresses a Zstandard frame that states its size. Throws RangeError if it is damaged. */
+export function decompressAll(frame: Uint8Array): Uint8Array {
+  try {
+    return decompress(frame);
+  } catch (error) {
+    throw new RangeError(`zstd: ${error instanceof Error ? error.message : String(error)}.`);
+  }
+}
+
 /** Returns the quantisation step [m]. Throws RangeError unless it is above 0 and at most 1 m. */
 export function checkStep(step: number): number {
   if (!(step > 0 && step <= 1))

@@ -27,6 +27,8 @@ export class Plot {
   private readonly plot: uPlot;
   private data: GraphData = { times: [], abscissa: undefined, curves: [] };
   private span: TimeSpan = { start: 0, end: 1 };
+  /** The line at the marked time. */
+  private now: HTMLElement | undefined;
 
   constructor(
     private readonly spec: GraphSpec,
@@ -43,6 +45,17 @@ export class Plot {
     [this.data, this.span] = [data, span];
     if (data.abscissa === undefined) this.plot.setData([data.times, ...data.curves], true);
     else this.plot.setData([[0, 1]], true);
+  }
+
+  /** Marks a time of a graph over time with a line [s]. */
+  mark(time: number): void {
+    if (this.spec.abscissa !== undefined) return;
+    if (this.now === undefined) {
+      this.now = document.createElement("div");
+      this.now.className = "now";
+      this.plot.over.append(this.now);
+    }
+    this.now.style.left = `${this.plot.valToPos(time, "x")}px`;
   }
 
   private fit(): void {

@@ -107,8 +107,9 @@ export class Exports {
       ...rest,
       values,
       sessionId: this.sessionId,
-      seconds: format?.instant ? 0 : seconds,
-      bodies: format?.numbersOnly ? [] : bodies,
+      // A page plays one breath.
+      seconds: format?.instant || format?.page ? 0 : seconds,
+      bodies: format?.numbersOnly || format?.page ? [] : bodies,
     };
   }
 

@@ -1,9 +1,10 @@
 import { make } from "../../dom/elements";
-import { alertMessage, labelledRow, loadOnOpen, section } from "../../dom/rows";
+import { labelledRow, loadOnOpen, section } from "../../dom/rows";
 import { ExportValues } from "../../gen/phrenic/v1/export_pb";
 import type { Body } from "../../geometry/bodies";
-import type { ExportProgress, Exports } from "../../session/exports";
+import type { Exports } from "../../session/exports";
 import type { Signal } from "../../state/signal";
+import { exportProgress } from "./export_progress";
 
 const valueNames: [ExportValues, string][] = [
   [ExportValues.UNSPECIFIED, "default"],
@@ -26,11 +27,12 @@ export function exportPanel(exports: Exports, bodies: Signal<Body[]>): HTMLEleme
   exports.choices.subscribe(() => {
     const format = exports.format;
     hint.textContent = format?.description ?? "";
-    length!.hidden = rate!.hidden = format?.instant ?? false;
-    bodyChoice!.hidden = format?.numbersOnly ?? false;
+    rate!.hidden = format?.instant ?? false;
+    length!.hidden = (format?.instant ?? false) || (format?.page ?? false);
+    bodyChoice!.hidden = (format?.numbersOnly ?? false) || (format?.page ?? false);
     values!.hidden = (format?.values.length ?? 0) < 2;
   });
-  const panel = section("Export the motion", false, ...rows, hint, start, progress(exports, start));
+  const panel = section("Export the motion", false, ...rows, hint, start, exportProgress(exports, start, "export"));
   return loadOnOpen(panel, () => exports.loadFormats());
 }
 
@@ -76,30 +78,4 @@ function numberRow(id: string, label: string, placeholder: string, choose: (valu
   const entry = make("input", { type: "number", step: "any", min: "0", id, placeholder });
   entry.onchange = () => choose(entry.value === "" ? undefined : entry.valueAsNumber);
   return labelledRow(id, label, entry);
-}
-
-/** Shows the progress and a link to the finished file. */
-function progress(exports: Exports, start: HTMLElement): HTMLElement {
-  const place = make("div", { id: "export-progress" });
-  exports.progress.subscribe((work) => {
-    const running = work.kind === "recording" || work.kind === "fetching";
-    (start as HTMLButtonElement).disabled = running;
-    place.replaceChildren(...progressElements(work, () => exports.stop()));
-  });
-  return place;
-}
-
-function progressElements(work: ExportProgress, stop: () => void): HTMLElement[] {
-  if (work.kind === "idle") return [];
-  if (work.kind === "failed") return [alertMessage(work.message)];
-  if (work.kind === "ready") {
-    const size = (work.size / 1e6).toFixed(1);
-    return [make("a", { href: work.url, download: work.file, id: "export-link" }, `Save ${work.file} (${size} MB)`)];
-  }
-  const bar = make("progress", { max: 1, ariaLabel: "Progress of the export" });
-  bar.value = work.done;
-  const left =
-    work.kind === "recording" && work.secondsLeft !== undefined ? `, ${work.secondsLeft.toFixed(0)} s left` : "";
-  const words = make("p", { className: "faint" }, `${work.kind === "recording" ? "Recording" : "Fetching"}${left}…`);
-  return [words, make("div", { className: "row" }, bar, make("button", { type: "button", onclick: stop }, "Stop"))];
 }

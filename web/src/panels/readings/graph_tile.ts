@@ -46,6 +46,12 @@ export class GraphTile {
     this.showValues(place);
   }
 
+  /** Marks a time [s], and shows the values at an index of the data. */
+  mark(time: number, place: number): void {
+    this.plot.mark(time);
+    this.showValues(place);
+  }
+
   /** Shows the values at an index of the data, or the last ones if undefined. */
   showValues(place: number | undefined): void {
     this.data.curves.forEach((values, i) => {

@@ -12,6 +12,8 @@ export interface Sharing {
   /** Opens the page with this query string. */
   open(query: string): void;
   photograph(): void;
+  /** Rows at the head of the list of copies. */
+  rows: HTMLElement[];
 }
 
 /** A dialog with links to this session, copies of it, and a screenshot. */
@@ -56,6 +58,7 @@ export class ShareDialog {
     const { controller, open, photograph } = this.sharing;
     const here = controller.sessionId;
     return [
+      ...this.sharing.rows,
       action("share-fork", "Your own copy", "A copy in the current state that you own.", "Fork", async () => {
         const id = await controller.fork();
         if (id !== undefined) open(`?${new URLSearchParams({ session: id })}`);

@@ -1,0 +1,91 @@
+#include "server/session/export/page_writer.h"
+
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "server/stream/codecs/zstd.h"
+#include "server/stream/geometry.h"
+
+namespace phrenic::session {
+namespace {
+
+constexpr std::string_view kMotionPlace = "__PHRENIC_MOTION__";
+constexpr std::size_t kMostFrameBytes = std::size_t{64} << 20;
+
+}  // namespace
+
+absl::StatusOr<std::string> ReadPageTemplate(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream page;
+  page << file.rdbuf();
+  std::string html = page.str();
+  if (file && html.find(kMotionPlace) != std::string::npos) return html;
+  return absl::NotFoundError(
+      absl::StrCat("format: html needs the built viewer's ", path, ": build it (npm run build in web/)"));
+}
+
+PageWriter::PageWriter(std::shared_ptr<const Model> model, std::string page, record::Sink sink)
+    : model_(std::move(model)),
+      layout_(*model_),
+      encoder_(model_, layout_),
+      page_(std::move(page)),
+      sink_(std::move(sink)) {}
+
+absl::Status PageWriter::Begin(const Run& run) {
+  motion_.set_scene(model_->scene.name());
+  motion_.set_scene_title(model_->scene.title());
+  *motion_.mutable_parameters() = run.parameters();
+  *motion_.mutable_scene_parameters() = model_->parameters;
+  *motion_.mutable_presets() = model_->scene.presets();
+  *motion_.mutable_report() = model_->report;
+  motion_.mutable_report()->clear_compile_seconds();
+  motion_.mutable_report()->clear_stages();
+  for (int body = 0; body < static_cast<int>(model_->bodies.size()); ++body) {
+    *motion_.add_bodies() = stream::MakeGeometry(*model_, layout_, body);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status PageWriter::AddFrame(const Run& run) {
+  const stream::Snapshot snapshot = {.sequence = frames_[0].size() + 1,
+                                     .state = run.state(),
+                                     .parameters = run.parameters(),
+                                     .made = absl::UnixEpoch()};
+  for (std::size_t i = 0; i < kBoundLevels.size(); ++i) {
+    const stream::Bytes bytes =
+        encoder_.Encode(snapshot, {.codec = v1::CODEC_PREDICTED, .bound_level = kBoundLevels[i]});
+    v1::WatchFramesResponse response;
+    if (bytes == nullptr || !response.ParseFromString(*bytes)) {
+      return absl::InternalError(absl::StrCat("the frame at ", run.state().time, " s has numbers that are not finite"));
+    }
+    frames_[i].Add(std::move(*response.mutable_frame()));
+    if (i + 1 == kBoundLevels.size()) coarsest_bytes_ += bytes->size();
+  }
+  if (coarsest_bytes_ <= kMostFrameBytes) return absl::OkStatus();
+  return absl::ResourceExhaustedError(
+      "seconds: the page would have more than 64 MiB; record fewer seconds or fewer frames a second");
+}
+
+absl::Status PageWriter::End(const std::function<absl::Status(double share)>& report) {
+  std::string page;
+  for (std::size_t i = 0; i < frames_.size() && (i == 0 || page.size() > kPageBytes); ++i) {
+    page = MakePage(frames_[i]);
+    const absl::Status go_on = report(static_cast<double>(i + 1) / static_cast<double>(frames_.size()));
+    if (!go_on.ok()) return go_on;
+  }
+  return sink_(page);
+}
+
+std::string PageWriter::MakePage(Frames& frames) {
+  motion_.mutable_frames()->Swap(&frames);
+  frames.Clear();
+  std::string compressed;
+  stream::AppendCompressed(motion_.SerializeAsString(), compressed);
+  const std::size_t at = page_.find(kMotionPlace);
+  return absl::StrCat(page_.substr(0, at), absl::Base64Escape(compressed), page_.substr(at + kMotionPlace.size()));
+}
+
+}  // namespace phrenic::session

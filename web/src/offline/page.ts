@@ -1,0 +1,140 @@
+import { create } from "@bufbuild/protobuf";
+import { stageInsets } from "../app/insets";
+import { SceneStructures } from "../app/scene_structures";
+import { LayerStyles } from "../appearance/layer_styles";
+import { elementById } from "../dom/elements";
+import { section } from "../dom/rows";
+import { CompileReportSchema } from "../gen/phrenic/v1/report_pb";
+import type { OfflineMotion } from "../gen/phrenic/v1/offline_pb";
+import { cutRows } from "../panels/view/cut_rows";
+import { layersPanel } from "../panels/view/layers_panel";
+import { Margins } from "../panels/view/margins";
+import { OrientationCube } from "../panels/view/orientation_cube";
+import { viewBar } from "../panels/view/view_bar";
+import { Signal } from "../state/signal";
+import type { Cut } from "../viewer/clipping";
+import { viewNames } from "../viewer/named_views";
+import { Viewer } from "../viewer/viewer";
+import { type Viewpoint, viewpoints } from "../viewer/viewpoints";
+import { BreathGraphs } from "./breath_graphs";
+import { Clip } from "./clip";
+import { factsSection, motionTitle } from "./facts";
+import { playback, scrubber } from "./playback";
+import { Player } from "./player";
+
+/** Shows a motion on the page: the scene with its layers, views and cuts, playback, graphs and facts. */
+export class MotionPage {
+  private readonly clip: Clip;
+  private readonly player: Player;
+  private readonly viewer: Viewer;
+  private readonly graphs: BreathGraphs;
+  private readonly margins = new Margins();
+  private readonly layerStyles = new LayerStyles();
+  private readonly structures: SceneStructures;
+  private readonly cut = new Signal<Cut>({ kind: "none", fraction: 0.5, flipped: false });
+  private readonly viewpoints = new Signal<Viewpoint[]>([]);
+  private readonly cube = new OrientationCube((view) => this.visit(view));
+
+  /** Throws RangeError for a motion that is not valid, and Error if the browser has no WebGL 2. */
+  constructor(private readonly motion: OfflineMotion) {
+    this.clip = new Clip(motion.frames, motion.bodies);
+    this.player = new Player(this.clip.length);
+    this.graphs = new BreathGraphs(motion.frames, this.clip.times, motion.scene);
+    this.viewer = new Viewer(elementById("view") as HTMLCanvasElement, this.host());
+    this.structures = new SceneStructures(this.viewer, this.layerStyles);
+  }
+
+  /** Builds the page, and plays unless the user prefers reduced motion. */
+  start(): void {
+    this.buildTexts();
+    this.buildStage();
+    this.buildPanels();
+    this.showScene();
+    addEventListener("keydown", (event) => this.onKey(event));
+    matchMedia("(prefers-color-scheme: light)").addEventListener("change", () => this.drawGraphs());
+    elementById("loading").hidden = true;
+    this.drawGraphs();
+    this.player.time.subscribe((time) => this.graphs.mark(time, this.clip.indexAt(time)));
+    this.player.setPlaying(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+  }
+
+  private host() {
+    const reduced = matchMedia("(prefers-reduced-motion: reduce)");
+    return {
+      advance: () => this.player.advance(performance.now()),
+      frame: () => this.clip.at(this.player.time.value),
+      afterDraw: (orientation: Parameters<Margins["show"]>[0]) => {
+        this.margins.show(orientation);
+        this.cube.show(orientation);
+      },
+      insets: stageInsets,
+      reducedMotion: () => reduced.matches,
+    };
+  }
+
+  private buildTexts(): void {
+    const { scene, preset } = motionTitle(this.motion);
+    document.title = preset === "" ? `${scene} – Phrenic` : `${scene}, ${preset.toLowerCase()} – Phrenic`;
+    elementById("motion-title").textContent = scene;
+    elementById("motion-preset").textContent = preset;
+  }
+
+  private buildStage(): void {
+    const { viewer, player, clip } = this;
+    const bar = viewBar(viewer, elementById("view"), this.viewpoints, (name) => this.visit(name));
+    elementById("views").append(...bar, this.structures.search);
+    elementById("cards").append(this.structures.card);
+    new ResizeObserver(() => viewer.resize()).observe(elementById("cards"));
+    elementById("stage").append(this.structures.label);
+    elementById("cube-slot").append(this.cube.element);
+    elementById("margins").append(...this.margins.elements);
+    elementById("playback-slot").append(playback(player));
+    elementById("readout-slot").append(scrubber(player, clip.length));
+    viewer.enablePicking((vertex) => this.structures.choose(vertex));
+    player.time.subscribe(() => viewer.refresh());
+  }
+
+  private buildPanels(): void {
+    elementById("graphs").append(this.graphs.element);
+    const cuts = section("Cut", false, ...cutRows(this.cut, (cut) => this.viewer.cutCoordinate(cut)));
+    elementById("panel").append(factsSection(this.motion), layersPanel(this.layerStyles), cuts);
+  }
+
+  private showScene(): void {
+    const { viewer, clip, layerStyles } = this;
+    viewer.show(clip.bodies);
+    layerStyles.start(clip.bodies, this.motion.report ?? create(CompileReportSchema));
+    layerStyles.all.subscribe((styles) => {
+      for (const { layer, opacity, visible } of styles) viewer.setLayerOpacity(layer, visible ? opacity : 0);
+    });
+    this.cut.subscribe((cut) => viewer.setCut(cut));
+    this.viewpoints.set(viewpoints(clip.bodies, viewer.bounds));
+    this.structures.start(clip.bodies);
+  }
+
+  /** Shows a named view; unknown names change nothing. */
+  private visit(name: string): void {
+    const viewpoint = this.viewpoints.value.find((each) => each.name === name);
+    const view = viewpoint?.view ?? viewNames.find((each) => each === name);
+    if (view === undefined) return;
+    this.cut.set(viewpoint?.cut ?? { ...this.cut.value, kind: "none" });
+    this.viewer.goTo(view);
+  }
+
+  private onKey(event: KeyboardEvent): void {
+    const { key, target, ctrlKey, metaKey, altKey } = event;
+    if (ctrlKey || metaKey || altKey || (target as Element | null)?.closest("input, select, button, summary")) return;
+    const viewpoint = this.viewpoints.value.find((each) => each.key === key);
+    if (viewpoint !== undefined) this.visit(viewpoint.name);
+    else if (key === "h") this.visit("home");
+    else if (key === "Escape") this.structures.showAll();
+    else if (key === " ") this.player.setPlaying(!this.player.playing.value);
+    else return;
+    event.preventDefault();
+  }
+
+  private drawGraphs(): void {
+    this.graphs.draw();
+    this.graphs.mark(this.player.time.value, this.clip.indexAt(this.player.time.value));
+  }
+}
