@@ -5,6 +5,7 @@ import { graphsOf, type GraphSpec, valuesOf } from "../../graphs/catalogue";
 import type { TimeSpan } from "../../graphs/window";
 import { TimeSeries } from "../../state/time_series";
 import { GraphTile } from "./graph_tile";
+import { MModePictures } from "./m_mode_pictures";
 
 /** Duration that is kept, and the durations that can be shown [simulated s]. */
 const kept = 120;
@@ -19,6 +20,8 @@ export interface TrackedSeries {
 /** Graphs of all values in the frames on a common time axis; they hold, zoom and resume together. */
 export class GraphsPanel {
   readonly element = make("div", { className: "graphs" });
+  /** The pictures beside the graph of the domes. */
+  readonly mMode = new MModePictures(kept);
   private readonly history = new TimeSeries(kept);
   private readonly list = make("div", { className: "tiles" });
   private readonly pause: HTMLButtonElement;
@@ -80,6 +83,7 @@ export class GraphsPanel {
       return new GraphTile(spec, history, this.fileName, events);
     });
     this.list.replaceChildren(...this.tiles.map(({ element }) => element));
+    this.list.querySelector('[data-graph="domes"]')?.after(this.mMode.element);
     this.drawn = -1;
   }
 
@@ -110,5 +114,6 @@ export class GraphsPanel {
 
   private show(span: TimeSpan): void {
     for (const tile of this.tiles) tile.show(span, undefined);
+    this.mMode.show(span);
   }
 }
