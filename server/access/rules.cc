@@ -36,6 +36,9 @@ constexpr Rule kRules[] = {
     {"SessionService.ResetSession", kNone, kController, kChanges},
     {"SessionService.UpdateParameters", kNone, kController, kChanges},
     {"SessionService.PullSession", kNone, kController, kChanges},
+    {"SessionService.SubmitAnswer", kNone, kViewer, kReads},  // changes no motion; one per pupil and question
+    {"SessionService.ListAnswers", kNone, kOwner, kReads},
+    {"SessionService.DeleteAnswers", kNone, kOwner, kChanges},
     {"ControlService.EnterSession", kNone, kController, kReads},  // repeated as a heartbeat
     {"ControlService.TakeControl", kNone, kController, kChanges},
     {"ControlService.HandControl", kNone, kController, kChanges},

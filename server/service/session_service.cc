@@ -105,6 +105,9 @@ void SessionService::AddTo(CallTable& calls) {
   calls.Add(Lane::kSession, *this, &SessionService::ResetSession);
   calls.Add(Lane::kSession, *this, &SessionService::UpdateParameters);
   calls.Add(Lane::kSession, *this, &SessionService::PullSession);
+  calls.Add(Lane::kQuick, *this, &SessionService::SubmitAnswer);
+  calls.Add(Lane::kSession, *this, &SessionService::ListAnswers);
+  calls.Add(Lane::kSession, *this, &SessionService::DeleteAnswers);
 }
 
 template <class Request, class Response, class Make>
@@ -293,6 +296,45 @@ grpc::Status SessionService::PullSession(grpc::CallbackServerContext* context, c
     }
     return FillSession(session.Pull(request->pulls(), request->release_others(), request->control_token()), response);
   });
+}
+
+template <class Request>
+absl::StatusOr<std::shared_ptr<session::Session>> SessionService::AdmitTeacher(
+    const grpc::CallbackServerContext& context, const Request& request) {
+  auto call = AdmitToSession(guard_, table_, context, request);
+  if (!call.ok()) return call.status();
+  if (guard_.Owns(call->caller, request.session_id())) return std::move(call->session);
+  if (absl::Status control = call->session->CheckControl(request.control_token()); !control.ok()) return control;
+  return std::move(call->session);
+}
+
+grpc::Status SessionService::SubmitAnswer(grpc::CallbackServerContext* context, const v1::SubmitAnswerRequest* request,
+                                          v1::SubmitAnswerResponse* response) {
+  const auto call = AdmitToSession(guard_, table_, *context, *request);
+  if (!call.ok()) return ToGrpc(call.status());
+  if (!request->name().empty()) {
+    if (absl::Status name = session::CheckName("name", request->name()); !name.ok()) return ToGrpc(name);
+  }
+  const auto attempts = call->session->answer_book().Submit(*request);
+  if (!attempts.ok()) return ToGrpc(attempts.status());
+  response->set_attempts(*attempts);
+  return grpc::Status::OK;
+}
+
+grpc::Status SessionService::ListAnswers(grpc::CallbackServerContext* context, const v1::ListAnswersRequest* request,
+                                         v1::ListAnswersResponse* response) {
+  const auto session = AdmitTeacher(*context, *request);
+  if (!session.ok()) return ToGrpc(session.status());
+  *response = (*session)->answer_book().List(request->lesson(), request->include_names());
+  return grpc::Status::OK;
+}
+
+grpc::Status SessionService::DeleteAnswers(grpc::CallbackServerContext* context,
+                                           const v1::DeleteAnswersRequest* request, v1::DeleteAnswersResponse*) {
+  const auto session = AdmitTeacher(*context, *request);
+  if (!session.ok()) return ToGrpc(session.status());
+  (*session)->answer_book().Clear();
+  return grpc::Status::OK;
 }
 
 }  // namespace phrenic::service

@@ -70,6 +70,13 @@ class SessionService final {
   // INVALID_ARGUMENT without a pull and without release_others.
   grpc::Status PullSession(grpc::CallbackServerContext* context, const v1::PullSessionRequest* request,
                            v1::PullSessionResponse* response);
+  // On Lane::kQuick. Needs no control: a class answers while its teacher controls.
+  grpc::Status SubmitAnswer(grpc::CallbackServerContext* context, const v1::SubmitAnswerRequest* request,
+                            v1::SubmitAnswerResponse* response);
+  grpc::Status ListAnswers(grpc::CallbackServerContext* context, const v1::ListAnswersRequest* request,
+                           v1::ListAnswersResponse* response);
+  grpc::Status DeleteAnswers(grpc::CallbackServerContext* context, const v1::DeleteAnswersRequest* request,
+                             v1::DeleteAnswersResponse* response);
 
  private:
   // Admits the call, has `make` add a session with its ControlBook to the table, and returns the session's status. The
@@ -81,6 +88,11 @@ class SessionService final {
   // wants it, runs on the lane's thread and returns the status. The errors of AdmitToSession, of RunOnce and of `act`.
   template <class Request, class Response, class Act>
   grpc::Status Change(const grpc::CallbackServerContext& context, const Request& request, Response* response, Act act);
+
+  // Admits a call that is for the teacher alone: the session's owner, or who controls it.
+  template <class Request>
+  absl::StatusOr<std::shared_ptr<session::Session>> AdmitTeacher(const grpc::CallbackServerContext& context,
+                                                                 const Request& request);
 
   session::Table& table_;
   AccessGuard& guard_;

@@ -18,6 +18,7 @@
 #include "phrenic/v1/session.pb.h"
 #include "server/mechanics/measures/readings.h"
 #include "server/mechanics/pulls.h"
+#include "server/session/classroom/answer_book.h"
 #include "server/session/control.h"
 #include "server/session/idempotency_cache.h"
 #include "server/session/limits.h"
@@ -82,6 +83,8 @@ class Session {
   stream::Publisher& publisher() { return publisher_; }
   // The answers to requests that have an id.
   IdempotencyCache& answers() { return idempotency_cache_; }
+  // The class's answers to the questions of lessons. Not saved.
+  AnswerBook& answer_book() { return answer_book_; }
 
   // Plays. A speed that is not set keeps the present one; `until` 0 never pauses. The session waits while it is a frame
   // ahead of `leader` (PlaySessionRequest.in_step_with). Returns FAILED_PRECONDITION if the session has diverged,
@@ -170,6 +173,7 @@ class Session {
   const Clock& clock_;
   stream::Publisher publisher_;
   IdempotencyCache idempotency_cache_;
+  AnswerBook answer_book_;
   absl::Mutex update_mutex_;            // held by one call of Update at a time
   std::atomic<std::int64_t> attended_;  // [ns] since 1970
   std::string announced_not_saved_;     // of AnnounceNotSaved

@@ -1,3 +1,4 @@
+import { type ClassAnswerSchema, type SubmitAnswerRequest } from "../../../web/src/gen/phrenic/v1/answers_pb";
 import { create, type MessageInitShape } from "@bufbuild/protobuf";
 import { Code, ConnectError, createRouterTransport } from "@connectrpc/connect";
 import { createApi } from "../../../web/src/connection/api";
@@ -63,6 +64,9 @@ export class FakeServer {
   readonly acknowledged: bigint[] = [];
   readonly updates: object[] = [];
   readonly pulls: Pull[] = [];
+  /** Answers to lessons that were submitted, and those that the server lists. */
+  readonly answers: SubmitAnswerRequest[] = [];
+  classAnswers: MessageInitShape<typeof ClassAnswerSchema>[] = [];
   /** Requests to create sessions, steps (expected tick, number of ticks) and deleted sessions. */
   readonly created: CreateSessionRequest[] = [];
   readonly stepRequests: [bigint | undefined, bigint][] = [];
@@ -131,6 +135,11 @@ export class FakeServer {
           this.updates.push(preset === "" ? parameters! : { preset });
           return this.answer({ session: this.session });
         },
+        submitAnswer: (request) => {
+          this.answers.push(request);
+          return this.answer({ attempts: 1 });
+        },
+        listAnswers: () => this.answer({ answers: this.classAnswers }),
         pullSession: ({ pulls }) => {
           this.pulls.push(...pulls);
           return this.answer({ session: this.session });

@@ -1,6 +1,7 @@
+import { create } from "@bufbuild/protobuf";
 import { fields } from "../appearance/fields";
 import type { LayerStyles } from "../appearance/layer_styles";
-import type { LessonView } from "../gen/phrenic/v1/lesson_pb";
+import { type LessonView, LessonViewSchema } from "../gen/phrenic/v1/lesson_pb";
 import type { Session } from "../gen/phrenic/v1/session_pb";
 import type { SceneNames } from "../session/lessons";
 import type { Signal } from "../state/signal";
@@ -33,17 +34,33 @@ export function whenShown(session: Signal<Session | undefined>, { all }: LayerSt
 
 /** Applies a step's view; unset fields change nothing. Requires: the names are those of `sceneNames`. */
 export function showLessonView(
-  { camera, cut, colouring, hiddenLayers }: LessonView,
+  { camera, cut, colouring, hiddenLayers, pose, cutPosition, cutFlipped }: LessonView,
   tools: SceneTools,
   layerStyles: LayerStyles,
 ): void {
   const view = viewNames.find((name) => name === camera);
   if (view !== undefined) tools.visit(view);
+  const { eye, target } = pose ?? {};
+  if (eye !== undefined && target !== undefined) tools.lookFrom({ eye, target });
   const kind = cutKinds.find((name) => name === cut);
-  if (kind !== undefined) tools.cut.set({ kind, fraction: 0.5, flipped: false });
+  if (kind !== undefined) tools.cut.set({ kind, fraction: cutPosition ?? 0.5, flipped: cutFlipped });
   if (colouring !== "") tools.coloring.choose(fields.find((field) => field.kind === colouring)?.kind);
   for (const { layer, visible } of layerStyles.all.value) {
     const wanted = !hiddenLayers.includes(layer) && layerStyles.shownByScene(layer);
     if (visible !== wanted) layerStyles.change(layer, { visible: wanted });
   }
+}
+
+/** Returns what is shown now as the view of a step. */
+export function keptLessonView(tools: SceneTools, layerStyles: LayerStyles): LessonView {
+  const { kind, fraction, flipped } = tools.cut.value;
+  const colouring = fields.find((each) => each.kind === tools.coloring.field.value)?.kind ?? "own";
+  const hidden = layerStyles.all.value.filter(({ layer, visible }) => !visible && layerStyles.shownByScene(layer));
+  return create(LessonViewSchema, {
+    pose: tools.pose,
+    cut: kind,
+    ...(kind === "none" ? {} : { cutPosition: fraction, cutFlipped: flipped }),
+    colouring,
+    hiddenLayers: hidden.map(({ layer }) => layer),
+  });
 }

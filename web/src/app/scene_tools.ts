@@ -8,6 +8,7 @@ import { TrackedVertices } from "../appearance/tracked_vertices";
 import { make } from "../dom/elements";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import type { Body, FrameArrays } from "../geometry/bodies";
+import type { CameraPose } from "../geometry/camera_pose";
 import { appearancePanel } from "../panels/view/appearance_panel";
 import { coloringCard } from "../panels/view/coloring_card";
 import { OrientationCube } from "../panels/view/orientation_cube";
@@ -142,6 +143,16 @@ export class SceneTools {
     if (viewpoint?.cut !== undefined) this.cut.set((this.visitedCut = { ...viewpoint.cut }));
     else if (this.cut.value === this.visitedCut) this.cut.set({ ...this.cut.value, kind: "none" });
     this.viewer.goTo(view);
+  }
+
+  /** The camera's pose [m]. */
+  get pose(): CameraPose {
+    return this.viewer.rig.pose;
+  }
+
+  /** Moves the camera to a pose. */
+  lookFrom(pose: CameraPose): void {
+    this.viewer.rig.moveTo(pose);
   }
 
   /** Receives every frame, also those that are not displayed. */

@@ -1,7 +1,9 @@
+import { create } from "@bufbuild/protobuf";
 import type { LayerStyles } from "../appearance/layer_styles";
+import type { Identity } from "../connection/identity";
 import { elementById } from "../dom/elements";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
-import type { Lesson, LessonStep, LessonView } from "../gen/phrenic/v1/lesson_pb";
+import { type Lesson, type LessonStep, LessonStepSchema, type LessonView } from "../gen/phrenic/v1/lesson_pb";
 import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
@@ -14,14 +16,17 @@ import { MotionSentence } from "../panels/student/motion_sentence";
 import { PredictionPad } from "../panels/student/prediction_pad";
 import { sliders } from "../panels/student/sliders";
 import { StudentGraphsPanel } from "../panels/student/student_graphs_panel";
+import { keptBreath } from "../parameters/kept_breath";
 import { activeLabel } from "../parameters/presets";
+import type { ClassAnswers } from "../session/class_answers";
 import { fetchJson, type LessonPlace, presetOf, type SceneNames, withLessonPlace } from "../session/lessons";
+import { OwnLessons } from "../session/own_lessons";
 import { type PageView, rememberPageView, withPageView } from "../session/page_view";
 import type { Participation } from "../session/participation";
 import type { SessionController } from "../session/session_controller";
 import { Signal } from "../state/signal";
 import { TimeSeries } from "../state/time_series";
-import { showLessonView, whenShown } from "./lesson_scene";
+import { keptLessonView, showLessonView, whenShown } from "./lesson_scene";
 import type { SceneTools } from "./scene_tools";
 import type { SecondView } from "./second_view";
 
@@ -36,6 +41,8 @@ export interface StudentParts {
   participation: Participation;
   presets: Signal<Preset[]>;
   report: Signal<CompileReport | undefined>;
+  answers: ClassAnswers;
+  identity: Identity;
   tools: SceneTools;
   layerStyles: LayerStyles;
   secondView: SecondView | undefined;
@@ -68,10 +75,18 @@ export class StudentView {
   ) {
     const { controller, participation, presets, secondView } = parts;
     this.names = whenShown(controller.session, parts.layerStyles);
+    const { answers, identity } = parts;
+    const teaches = new Signal(false);
+    participation.roles.subscribe(({ mayChange, isOwner }) => teaches.set(mayChange || isOwner));
     this.lessons = new LessonCard({
       fetchFile: fetchJson,
       names: () => this.names,
       play: (lesson, step) => this.playStep(lesson, step),
+      answer: (place, answer) => void answers.submit(place, answer),
+      listAnswers: (lesson, names) => answers.list(lesson, names),
+      teaches,
+      own: new OwnLessons(identity.storage),
+      keep: () => this.keepStep(),
     });
     const open = (query: string) => parts.open(withLessonPlace(query, this.lessons.place.value));
     this.view = new Signal(first);
@@ -170,9 +185,18 @@ export class StudentView {
   private playStep(lesson: Lesson, step: LessonStep): void {
     const { controller, participation, tools, layerStyles } = this.parts;
     const preset = presetOf(lesson, step);
-    if (participation.roles.value.mayChange && preset !== "") void controller.usePreset(preset, step.parameters ?? {});
+    const breath = preset !== "" || step.parameters !== undefined;
+    if (participation.roles.value.mayChange && breath) void controller.usePreset(preset, step.parameters ?? {});
     this.lessonView = step.view;
     if (step.view !== undefined) showLessonView(step.view, tools, layerStyles);
+  }
+
+  /** Returns what is shown now as a step, without words. */
+  private async keepStep(): Promise<LessonStep> {
+    const { controller, presets, tools, layerStyles } = this.parts;
+    const current = controller.session.value?.parameters;
+    const breath = current && keptBreath(presets.value, await controller.startValues(), current);
+    return create(LessonStepSchema, { ...breath, view: keptLessonView(tools, layerStyles) });
   }
 
   private show(view: PageView): void {

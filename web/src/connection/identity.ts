@@ -5,7 +5,7 @@ export type KeyValueStorage = Pick<Storage, "getItem" | "setItem">;
 
 /** The user's name and the control token for each session, stored in the browser. */
 export class Identity {
-  constructor(private readonly storage: KeyValueStorage) {}
+  constructor(readonly storage: KeyValueStorage) {}
 
   /** The user's name; empty until it is set. */
   get name(): string {
@@ -14,6 +14,16 @@ export class Identity {
 
   set name(name: string) {
     this.storage.setItem("phrenic-name", name);
+  }
+
+  /** The secret that identifies this browser among those who answer a lesson's questions. */
+  get respondent(): string {
+    const known = this.storage.getItem("phrenic-respondent");
+    if (known !== null) return known;
+    const bytes = [...crypto.getRandomValues(new Uint8Array(16))];
+    const secret = bytes.map((byte) => byte.toString(16).padStart(2, "0")).join("");
+    this.storage.setItem("phrenic-respondent", secret);
+    return secret;
   }
 
   /** True if the camera follows that of the participant in control. */

@@ -1,11 +1,6 @@
-import { fromJson, type JsonValue } from "@bufbuild/protobuf";
-import {
-  type Lesson,
-  LessonSchema,
-  type LessonStep,
-  type LessonView,
-  type Question,
-} from "../gen/phrenic/v1/lesson_pb";
+import type { JsonValue } from "@bufbuild/protobuf";
+import type { Lesson, LessonStep, LessonView, Question } from "../gen/phrenic/v1/lesson_pb";
+import { readLesson } from "./lesson_file";
 
 /** A place in a lesson: the name of its file and the number of a step from 1. */
 export interface LessonPlace {
@@ -31,9 +26,7 @@ export async function lessonNames(fetchFile: FetchJson): Promise<string[]> {
 /** Returns a lesson by the name of its file. Throws Error for an unknown name, field or value. */
 export async function loadLesson(name: string, fetchFile: FetchJson): Promise<Lesson> {
   if (!/^[a-z0-9-]+$/.test(name)) throw new Error(`lesson: "${name}" is not a name of letters a-z, digits and "-"`);
-  const lesson = fromJson(LessonSchema, await fetchFile(`lessons/${name}.json`));
-  if (lesson.steps.length === 0) throw new Error(`lessons/${name}.json: steps: a lesson needs at least one`);
-  return lesson;
+  return readLesson(`lessons/${name}.json`, await fetchFile(`lessons/${name}.json`));
 }
 
 /** The scene of a session, and the names that the views of its lessons may use. */

@@ -2,6 +2,8 @@ import { create } from "@bufbuild/protobuf";
 import { beforeEach, expect, test, vi } from "vitest";
 import { sceneNames, whenShown } from "../../../../web/src/app/lesson_scene";
 import { LayerStyles } from "../../../../web/src/appearance/layer_styles";
+import { AnswerPhase } from "../../../../web/src/gen/phrenic/v1/answers_pb";
+import { LessonStepSchema } from "../../../../web/src/gen/phrenic/v1/lesson_pb";
 import { ParametersSchema } from "../../../../web/src/gen/phrenic/v1/parameters_pb";
 import { type Preset, PresetSchema } from "../../../../web/src/gen/phrenic/v1/scene_pb";
 import { SessionSchema } from "../../../../web/src/gen/phrenic/v1/session_pb";
@@ -10,6 +12,7 @@ import { compareButton } from "../../../../web/src/panels/student/compare_button
 import { LessonCard } from "../../../../web/src/panels/student/lesson_card";
 import { sliders } from "../../../../web/src/panels/student/sliders";
 import { fetchJson } from "../../../../web/src/session/lessons";
+import { OwnLessons } from "../../../../web/src/session/own_lessons";
 import { SessionController } from "../../../../web/src/session/session_controller";
 import { Signal } from "../../../../web/src/state/signal";
 import { FakeClock, settle } from "../../fakes/fake_clock";
@@ -134,8 +137,24 @@ function card(files: Record<string, unknown>) {
     return files[path] as never;
   };
   const names = async () => sceneNames("thorax", ["ribs", "lungs"]);
-  return { card: new LessonCard({ fetchFile, names, play: (_, step) => played.push(step.title) }), played };
+  const answers: [place: object, right: boolean][] = [];
+  const stored = new Map<string, string>();
+  const storage = { getItem: (key: string) => stored.get(key) ?? null, setItem: (k: string, v: string) => void stored.set(k, v) }; // prettier-ignore
+  const own = new OwnLessons(storage);
+  const actions = {
+    fetchFile,
+    names,
+    play: (_: unknown, step: { title: string }) => void played.push(step.title),
+    answer: (place: object, { right }: { right: boolean }) => void answers.push([place, right]),
+    listAnswers: async () => [],
+    teaches: new Signal(true),
+    own,
+    keep: async () => create(LessonStepSchema, { preset: "deep", view: { cut: "coronal", cutPosition: 0.4 } }),
+  };
+  return { card: new LessonCard(actions), played, answers, own };
 }
+
+const submit = (form: HTMLFormElement) => form.onsubmit?.(new Event("submit", { cancelable: true }) as SubmitEvent);
 
 test("ALessonIsPlayedStepByStep", async () => {
   const { card: player, played } = card({ "lessons/one.json": lesson });
@@ -151,7 +170,7 @@ test("ALessonIsPlayedStepByStep", async () => {
 });
 
 test("AWrongAnswerCanBeTriedAgainAndARightOneIsExplained", async () => {
-  const { card: player } = card({ "lessons/one.json": lesson });
+  const { card: player, answers } = card({ "lessons/one.json": lesson });
   await player.start({ name: "one", step: 2 });
   const form = player.element.querySelector("form")!;
   const answer = (i: number) => {
@@ -163,6 +182,80 @@ test("AWrongAnswerCanBeTriedAgainAndARightOneIsExplained", async () => {
   expect(form.textContent).toContain("Choose an answer first.");
   expect(answer(1)).toContain("Not yet.");
   expect(answer(0)).toBe("Right. Because.");
+  const place = { lesson: "one", step: 2, phase: AnswerPhase.UNSPECIFIED };
+  expect(answers).toEqual([[place, false], [place, true]]); // prettier-ignore
+});
+
+test("TheSameQuestionsBeforeAndAfterALessonGiveADifference", async () => {
+  const { card: player, answers } = card({ "lessons/one.json": lesson });
+  await player.start({ name: "one", step: 1 });
+  const take = (choice: number) => {
+    const form = player.element.querySelector<HTMLFormElement>("#lesson-test")!;
+    form.querySelectorAll("input")[choice].checked = true;
+    expect(form.textContent).not.toContain("Because.");
+    submit(form);
+  };
+  player.element.querySelector<HTMLElement>("#lesson-pretest")!.click();
+  take(1);
+  expect(player.element.textContent).toContain("Step 1 of 2");
+  expect(player.element.querySelector("#lesson-pretest")).toBeNull();
+  player.move(1);
+  player.element.querySelector<HTMLElement>("#lesson-next")!.click();
+  take(0);
+  const words = "Before the lesson 0 of 1 right, after it 1 of 1: 1 more.";
+  expect(player.element.querySelector("#lesson-difference")!.textContent).toBe(words);
+  expect(answers.map(([place, right]) => [(place as { phase: AnswerPhase }).phase, right])).toEqual([
+    [AnswerPhase.BEFORE, false],
+    [AnswerPhase.AFTER, true],
+  ]);
+});
+
+test("OnlyWhoTeachesSeesTheAnswersOfTheClass", async () => {
+  const { card: player } = card({ "lessons/one.json": lesson });
+  await player.start({ name: "one", step: 2 });
+  expect(player.element.querySelector("#class-results")!.classList.contains("hidden")).toBe(false);
+});
+
+const type = (root: HTMLElement, id: string, value: string) =>
+  (root.querySelector<HTMLInputElement | HTMLTextAreaElement>(`#${id}`)!.value = value);
+
+test("AViewIsKeptAsAStepAndTheLessonPlayed", async () => {
+  const { card: player, played, own } = card({});
+  player.element.querySelector<HTMLElement>("#make-lesson")!.click();
+  await settle();
+  const form = player.element.querySelector<HTMLFormElement>("#step-form")!;
+  const press = (words: string) =>
+    [...player.element.querySelectorAll("button")].find((each) => each.textContent === words)!.click();
+  submit(form);
+  await settle();
+  expect(form.textContent).toContain("The step cannot be kept: title");
+  for (const [id, value] of [
+    ["step-title", "A deep breath"],
+    ["step-caption", "Both domes fall."],
+    ["step-question", "How far?"],
+    ["step-answers", "5 ± 1 cm"],
+    ["step-explanation", "They pull."],
+  ] as const)
+    type(form, id, value);
+  submit(form);
+  await settle();
+  expect(player.element.querySelector("#maker-steps")!.textContent).toContain("A deep breath");
+  press("Save and play");
+  expect(player.element.textContent).toContain("The lesson is not complete: title");
+  type(player.element, "maker-title", "Tiefe Atemzüge");
+  press("Save and play");
+  await settle();
+  expect(played).toEqual(["A deep breath"]);
+  expect(player.place.value).toEqual({ name: "my-tiefe-atemzu-ge", step: 1 });
+  const [step] = own.get("my-tiefe-atemzu-ge")!.steps;
+  expect(step).toMatchObject({ preset: "deep", view: { cut: "coronal", cutPosition: 0.4 } });
+  expect(step.question!.number).toMatchObject({ value: 5, tolerance: 1, unit: "cm" });
+});
+
+test("ALessonOfAnotherBrowserIsAskedForAsAFile", async () => {
+  const { card: player } = card({});
+  await player.start({ name: "my-lesson", step: 1 });
+  expect(player.element.textContent).toContain("it is kept in another browser: open its file here");
 });
 
 const withView = (view: object) => ({ ...lesson, steps: [{ ...lesson.steps[0], view }] });
@@ -170,7 +263,7 @@ const withView = (view: object) => ({ ...lesson, steps: [{ ...lesson.steps[0], v
 test.each([
   ["missing", {}, "the server has no such file"],
   ["../../etc", {}, "is not a name"],
-  ["empty", { "lessons/empty.json": { title: "a", summary: "b", scene: "c" } }, "a lesson needs at least one"],
+  ["empty", { "lessons/empty.json": { title: "a", summary: "b", scene: "c" } }, "steps: a lesson needs at least one"],
   ["odd", { "lessons/odd.json": { title: "a", steps: [{ colour: "red" }] } }, "colour"],
   ["other", { "lessons/other.json": { ...lesson, scene: "cube" } }, 'this session shows "thorax"'],
   [

@@ -1,43 +1,61 @@
 import { make } from "../../dom/elements";
 import { alertMessage } from "../../dom/rows";
+import { AnswerPhase } from "../../gen/phrenic/v1/answers_pb";
 import type { Lesson, LessonStep } from "../../gen/phrenic/v1/lesson_pb";
-import {
-  checkLesson,
-  type FetchJson,
-  lessonNames,
-  type LessonPlace,
-  loadLesson,
-  type SceneNames,
-} from "../../session/lessons";
+import type { GivenAnswer, QuestionPlace } from "../../session/class_answers";
+import { checkLesson, type FetchJson, type LessonPlace, loadLesson, type SceneNames } from "../../session/lessons";
+import type { OwnLessons } from "../../session/own_lessons";
 import { Signal } from "../../state/signal";
+import { ClassResults, type ListAnswers } from "./class_results";
+import { LessonList } from "./lesson_list";
+import { LessonMaker } from "./lesson_maker";
+import { differenceWords, lessonTest, questionCount, type Score } from "./lesson_test";
 import { questionForm } from "./question_form";
+import type { KeepView } from "./step_form";
 
-/** What a lesson does to the page. */
+/** What a lesson does to the page, and where it comes from. */
 export interface LessonActions {
   fetchFile: FetchJson;
   /** Returns the scene of the session and its names, once it is shown. */
   names(): Promise<SceneNames>;
   /** Shows a step in the simulation. */
   play(lesson: Lesson, step: LessonStep): void;
+  /** Sends an answer to the class. */
+  answer(place: QuestionPlace, answer: GivenAnswer): void;
+  listAnswers: ListAnswers;
+  /** True if this viewer may see the answers of the class. */
+  teaches: Signal<boolean>;
+  own: OwnLessons;
+  keep: KeepView;
 }
 
-/** The list of lessons, and the lesson that is played: caption, task, question, progress, next and back. */
+/** The list of lessons, the lesson that is played, and the form that makes one. */
 export class LessonCard {
   readonly element = make("section", { id: "lesson", ariaLabel: "Lesson" });
   /** The lesson and step that are loaded or shown; undefined without a lesson. */
   readonly place = new Signal<LessonPlace | undefined>(undefined);
+  private readonly list: LessonList;
+  private readonly results: ClassResults;
   private lesson: Lesson | undefined;
+  /** Of the test before the lesson; undefined if it was not taken. */
+  private before: Score | undefined;
 
   constructor(private readonly actions: LessonActions) {
+    this.list = new LessonList(actions, {
+      start: (name) => void this.start({ name, step: 1 }),
+      make: (lesson) => void this.make(lesson),
+    });
+    this.results = new ClassResults(actions.listAnswers);
+    actions.teaches.subscribe((teaches) => this.results.element.classList.toggle("hidden", !teaches));
     this.showList();
   }
 
   /** Loads and starts a lesson at a step; a step beyond the end is the last one. */
   async start({ name, step }: LessonPlace): Promise<void> {
-    this.lesson = undefined;
+    this.lesson = this.before = undefined;
     this.place.set({ name, step });
     try {
-      const [lesson, names] = await Promise.all([loadLesson(name, this.actions.fetchFile), this.actions.names()]);
+      const [lesson, names] = await Promise.all([this.load(name), this.actions.names()]);
       checkLesson(lesson, names);
       this.lesson = lesson;
       this.show({ name, step: Math.min(step, lesson.steps.length) });
@@ -55,6 +73,13 @@ export class LessonCard {
     if (step >= 1 && step <= this.lesson.steps.length) this.show({ ...value, step });
   }
 
+  private async load(name: string): Promise<Lesson> {
+    const own = this.actions.own.get(name);
+    if (own !== undefined) return own;
+    if (name.startsWith("my-")) throw new Error("it is kept in another browser: open its file here");
+    return loadLesson(name, this.actions.fetchFile);
+  }
+
   private show(place: LessonPlace): void {
     const { lesson } = this;
     const step = lesson?.steps[place.step - 1];
@@ -62,11 +87,52 @@ export class LessonCard {
     this.place.set(place);
     const title = make("h3", { tabIndex: -1 }, step.title);
     const task = step.task === "" ? [] : [make("p", { className: "task" }, make("b", {}, "Try: "), step.task)];
-    const question = step.question === undefined ? [] : [questionForm(step.question)];
+    const answered = (answer: GivenAnswer) => this.send(place.step, AnswerPhase.UNSPECIFIED, answer);
+    const question = step.question === undefined ? [] : [questionForm(step.question, answered)];
     const caption = make("p", { className: "caption" }, step.caption);
-    this.element.replaceChildren(this.head(lesson, place), title, caption, ...task, ...question, this.buttons(place));
+    const parts = [title, caption, ...task, ...question, ...this.testFirst(lesson, place)];
+    this.element.replaceChildren(this.head(lesson, place), ...parts, this.results.element, this.buttons(place));
+    this.results.show(questionCount(lesson) === 0 ? undefined : { ...place, lesson });
     title.focus();
     this.actions.play(lesson, step);
+  }
+
+  private send(step: number, phase: AnswerPhase, answer: GivenAnswer): void {
+    const lesson = this.place.value?.name;
+    if (lesson !== undefined) this.actions.answer({ lesson, step, phase }, answer);
+  }
+
+  /** A button on the first step that asks all questions before the lesson. */
+  private testFirst(lesson: Lesson, place: LessonPlace): HTMLElement[] {
+    if (place.step > 1 || this.before !== undefined || questionCount(lesson) === 0) return [];
+    const onclick = () =>
+      this.showTest(AnswerPhase.BEFORE, (score) => {
+        this.before = score;
+        this.show(place);
+      });
+    return [make("button", { type: "button", id: "lesson-pretest", onclick }, "Answer the questions first")];
+  }
+
+  private showTest(phase: AnswerPhase.BEFORE | AnswerPhase.AFTER, done: (score: Score) => void): void {
+    const { lesson } = this;
+    if (lesson === undefined) return;
+    const test = lessonTest(lesson, phase, (...answer) => this.send(...answer), done);
+    const head = make("header", {}, make("h2", {}, lesson.title));
+    const leave = make("button", { type: "button", onclick: () => this.leave() }, "Leave");
+    this.element.replaceChildren(head, test, leave);
+    test.querySelector<HTMLElement>("h3")?.focus();
+  }
+
+  /** The end of a lesson: the same questions once more, if they were asked before. */
+  private finish(): void {
+    const { before } = this;
+    if (before === undefined) return this.leave();
+    this.showTest(AnswerPhase.AFTER, (after) => {
+      this.leave();
+      const words = make("p", { id: "lesson-difference" }, differenceWords(before, after));
+      words.setAttribute("role", "status");
+      this.element.prepend(words);
+    });
   }
 
   private head(lesson: Lesson, { step }: LessonPlace): HTMLElement {
@@ -80,46 +146,34 @@ export class LessonCard {
     const back = make("button", { type: "button", id: "lesson-back", onclick: () => this.move(-1) }, "Back");
     back.disabled = step === 1;
     const next = make("button", { type: "button", id: "lesson-next", className: "primary" }, last ? "Finish" : "Next");
-    next.onclick = () => (last ? this.leave() : this.move(1));
+    next.onclick = () => (last ? this.finish() : this.move(1));
     const leave = make("button", { type: "button", id: "lesson-leave", onclick: () => this.leave() }, "Leave");
     return make("div", { className: "lesson-buttons" }, back, leave, next);
   }
 
   private leave(): void {
-    this.lesson = undefined;
+    this.lesson = this.before = undefined;
     this.place.set(undefined);
     this.showList();
   }
 
-  /** The list of the lessons about this scene is loaded when it is opened first. */
   private showList(): void {
-    const list = make("ul");
-    const summary = make("summary", {}, "Lessons");
-    const fold = make("details", { id: "lessons" }, summary, list);
-    fold.ontoggle = () => {
-      if (fold.open && list.childElementCount === 0) void this.fill(list);
+    this.results.show(undefined);
+    this.list.close();
+    this.element.replaceChildren(this.list.element);
+  }
+
+  private async make(first: Lesson | undefined): Promise<void> {
+    const { own, keep, names } = this.actions;
+    const { scene } = await names();
+    const making = {
+      keep,
+      save: (lesson: Lesson) => own.put(lesson),
+      play: (name: string) => void this.start({ name, step: 1 }),
+      leave: () => this.showList(),
     };
-    this.element.replaceChildren(fold);
-  }
-
-  private async fill(list: HTMLElement): Promise<void> {
-    try {
-      const names = await lessonNames(this.actions.fetchFile);
-      const lessons = await Promise.all(names.map((name) => loadLesson(name, this.actions.fetchFile)));
-      const { scene } = await this.actions.names();
-      const rows = lessons.flatMap((lesson, i) => (lesson.scene === scene ? [this.row(names[i], lesson)] : []));
-      const none = make("li", {}, `There is no lesson about the scene “${scene}”.`);
-      list.replaceChildren(...(rows.length > 0 ? rows : [none]));
-    } catch (error) {
-      list.replaceChildren(make("li", {}, alertMessage(`The lessons cannot be listed: ${(error as Error).message}.`)));
-    }
-  }
-
-  private row(name: string, { title, summary }: Lesson): HTMLElement {
-    const onclick = () => void this.start({ name, step: 1 });
-    const words = [make("b", {}, title), make("span", {}, summary)];
-    const open = make("button", { type: "button", onclick }, ...words);
-    open.dataset.lesson = name;
-    return make("li", {}, open);
+    const { element } = new LessonMaker(making, scene, first);
+    this.element.replaceChildren(element);
+    element.querySelector("input")?.focus();
   }
 }

@@ -1,51 +1,62 @@
 import { make } from "../../dom/elements";
 import type { Question } from "../../gen/phrenic/v1/lesson_pb";
+import type { GivenAnswer } from "../../session/class_answers";
 import { rightAnswers, rightNumber } from "../../session/lessons";
 
-/** A question with its answers, a button that checks them, and the explanation; it can be tried again. */
-export function questionForm(question: Question): HTMLElement {
+/**
+ * A question with its answers, a button that checks them, and the explanation; it can be tried again. Calls `answered`
+ * with each answer.
+ */
+export function questionForm(question: Question, answered: (answer: GivenAnswer) => void): HTMLElement {
   const result = make("p", { className: "answer" });
   result.setAttribute("role", "status");
-  const { rows, right } = question.number === undefined ? choiceRows(question) : numberRow(question);
+  const { legend, rows, given } = questionFields(question, "answer");
   const check = make("button", { type: "submit" }, "Check");
-  const fields = make(
-    "fieldset",
-    { className: "question" },
-    make("legend", {}, question.words),
-    ...rows,
-    check,
-    result,
-  );
-  const form = make("form", {}, fields);
+  const form = make("form", {}, make("fieldset", { className: "question" }, legend, ...rows, check, result));
   form.onsubmit = (event) => {
     event.preventDefault();
-    const answered = right();
+    const answer = given();
     result.textContent =
-      answered === undefined
+      answer === undefined
         ? "Choose an answer first."
-        : `${answered ? "Right." : "Not yet."} ${answered ? question.explanation : "Look again and try once more."}`;
-    result.dataset.right = String(answered === true);
+        : `${answer.right ? "Right." : "Not yet."} ${answer.right ? question.explanation : "Look again and try once more."}`;
+    result.dataset.right = String(answer?.right === true);
+    if (answer !== undefined) answered(answer);
   };
   return form;
 }
 
-interface Rows {
+/** The inputs of a question. */
+export interface QuestionFields {
+  legend: HTMLElement;
   rows: HTMLElement[];
-  /** True if the answer is right; undefined if nothing was entered. */
-  right(): boolean | undefined;
+  /** Returns what is entered; undefined if nothing is. */
+  given(): GivenAnswer | undefined;
 }
 
-function choiceRows(question: Question): Rows {
+/** Returns the inputs of a question; `name` groups the answers of which one can be chosen. */
+export function questionFields(question: Question, name: string): QuestionFields {
+  const legend = make("legend", {}, question.words);
+  return { legend, ...(question.number === undefined ? choiceRows(question, name) : numberRow(question)) };
+}
+
+function choiceRows(question: Question, name: string): Omit<QuestionFields, "legend"> {
   const several = question.answers.filter(({ right }) => right).length > 1;
-  const inputs = question.answers.map(() => make("input", { type: several ? "checkbox" : "radio", name: "answer" }));
+  const inputs = question.answers.map(() => make("input", { type: several ? "checkbox" : "radio", name }));
   const rows = question.answers.map(({ words }, i) => make("label", {}, inputs[i], words));
-  const chosen = () => inputs.flatMap(({ checked }, i) => (checked ? [i] : []));
-  return { rows, right: () => (chosen().length === 0 ? undefined : rightAnswers(question, chosen())) };
+  const given = () => {
+    const choices = inputs.flatMap(({ checked }, i) => (checked ? [i] : []));
+    return choices.length === 0 ? undefined : { choices, number: undefined, right: rightAnswers(question, choices) };
+  };
+  return { rows, given };
 }
 
-function numberRow(question: Question): Rows {
+function numberRow(question: Question): Omit<QuestionFields, "legend"> {
   const unit = question.number?.unit ?? "";
   const input = make("input", { type: "number", step: "any", ariaLabel: `Your answer in ${unit}` });
-  const right = () => (Number.isNaN(input.valueAsNumber) ? undefined : rightNumber(question, input.valueAsNumber));
-  return { rows: [make("label", {}, input, ` ${unit}`)], right };
+  const given = () => {
+    const number = input.valueAsNumber;
+    return Number.isNaN(number) ? undefined : { choices: [], number, right: rightNumber(question, number) };
+  };
+  return { rows: [make("label", {}, input, ` ${unit}`)], given };
 }

@@ -1,0 +1,124 @@
+import { download } from "../../dom/download";
+import { make } from "../../dom/elements";
+import { alertMessage, switchRow } from "../../dom/rows";
+import { AnswerPhase, type ClassAnswer } from "../../gen/phrenic/v1/answers_pb";
+import type { Lesson, Question } from "../../gen/phrenic/v1/lesson_pb";
+import { answersCsv, compareTests, summaryOf } from "../../session/answer_summary";
+
+/** Time between two questions to the server while the results are open [ms]. */
+const refreshInterval = 2000;
+
+/** Returns the class's answers to the lesson of this name. */
+export type ListAnswers = (lesson: string, includeNames: boolean) => Promise<ClassAnswer[]>;
+
+/** The answers of the class to the question of a step, as they come, without names unless they are asked for. */
+export class ClassResults {
+  readonly element = make("details", { id: "class-results" });
+  private readonly body = make("div", { className: "class-results" });
+  private readonly names: HTMLInputElement;
+  private readonly tools: HTMLElement;
+  private timer: ReturnType<typeof setInterval> | undefined;
+  private shown: { name: string; lesson: Lesson; step: number } | undefined;
+  private answers: ClassAnswer[] = [];
+
+  constructor(private readonly list: ListAnswers) {
+    const { row, input } = switchRow("Names", "Shows who gave which answer, of those who gave a name", () =>
+      this.refresh(),
+    );
+    this.names = input;
+    const save = make("button", { type: "button", onclick: () => this.save() }, "Save as CSV");
+    this.tools = make("div", { className: "row" }, row, save);
+    this.element.append(make("summary", {}, "Answers of the class"), this.body, this.tools);
+    this.element.ontoggle = () => this.watch();
+  }
+
+  /** Shows the answers to the question of a step, from 1; undefined hides the results. */
+  show(shown: { name: string; lesson: Lesson; step: number } | undefined): void {
+    this.shown = shown;
+    this.element.hidden = shown === undefined;
+    this.watch();
+  }
+
+  /** Asks the server while the results are open and on the page. */
+  private watch(): void {
+    clearInterval(this.timer);
+    this.timer = undefined;
+    if (!this.element.open || this.shown === undefined) return;
+    this.timer = setInterval(() => this.refresh(), refreshInterval);
+    void this.refresh();
+  }
+
+  private async refresh(): Promise<void> {
+    const { shown } = this;
+    if (shown === undefined || !this.element.isConnected) return this.stop();
+    try {
+      const answers = await this.list(shown.name, this.names.checked);
+      if (shown !== this.shown) return;
+      this.answers = answers;
+      this.body.replaceChildren(...this.results(shown.lesson.steps[shown.step - 1]?.question, shown.step));
+      this.tools.hidden = false;
+    } catch (error) {
+      this.stop();
+      this.tools.hidden = true;
+      this.body.replaceChildren(alertMessage((error as Error).message));
+    }
+  }
+
+  private stop(): void {
+    clearInterval(this.timer);
+    this.timer = undefined;
+  }
+
+  private results(question: Question | undefined, step: number): HTMLElement[] {
+    const parts = question === undefined ? [] : this.ofQuestion(question, step);
+    const tests = compareTests(this.answers);
+    const percent = (share: number) => `${Math.round(100 * share)} %`;
+    if (tests !== undefined) {
+      const gain = Math.round(100 * (tests.after - tests.before));
+      const words = `Tests of ${tests.respondents}: ${percent(tests.before)} right before the lesson, ${percent(tests.after)} after it (${gain >= 0 ? "+" : "−"}${Math.abs(gain)} points).`;
+      parts.push(make("p", { id: "class-tests" }, words));
+    }
+    return parts.length > 0 ? parts : [make("p", {}, "This step has no question.")];
+  }
+
+  private ofQuestion(question: Question, step: number): HTMLElement[] {
+    const { answered, right, firstRight, counts, numbers } = summaryOf(this.answers, step, question);
+    if (answered === 0) return [make("p", {}, "No answer yet.")];
+    const words = make("p", {}, `${answered} answered, ${right} right, ${firstRight} at the first attempt.`);
+    const bars = question.answers.map((each, i) => bar(each.words, counts[i], answered, each.right));
+    const unit = question.number?.unit ?? "";
+    const given = numbers.length === 0 ? [] : [make("p", {}, `Numbers [${unit}]: ${numbers.join(", ")}`)];
+    return [words, ...bars, ...given, ...this.named(question, step)];
+  }
+
+  private named(question: Question, step: number): HTMLElement[] {
+    if (!this.names.checked) return [];
+    const rows = this.answers
+      .filter((each) => each.step === step && each.phase === AnswerPhase.UNSPECIFIED)
+      .map(({ name, respondent, choices, number, right }) => {
+        const words = number ?? choices.map((i) => question.answers[i]?.words ?? "").join("; ");
+        return make("li", {}, `${name || `Number ${respondent}`}: ${words}${right ? " ✓" : ""}`);
+      });
+    return [make("ul", {}, ...rows)];
+  }
+
+  private save(): void {
+    if (this.shown === undefined) return;
+    const { name, lesson } = this.shown;
+    download(
+      `${name.replaceAll(/[^a-z0-9-]+/g, "-")}-answers.csv`,
+      new Blob([answersCsv(this.answers, lesson)], { type: "text/csv" }),
+    );
+  }
+}
+
+function bar(words: string, count: number, of: number, right: boolean): HTMLElement {
+  const meter = make("progress", { max: of, value: count, ariaLabel: `${count} of ${of}: ${words}` });
+  return make(
+    "div",
+    { className: "answer-bar" },
+    make("span", {}, `${words}${right ? " ✓" : ""}`),
+    make("b", {}, String(count)),
+    meter,
+  );
+}

@@ -1,0 +1,99 @@
+import { create } from "@bufbuild/protobuf";
+import { download } from "../../dom/download";
+import { make } from "../../dom/elements";
+import { alertMessage, labelledRow } from "../../dom/rows";
+import { type Lesson, LessonSchema } from "../../gen/phrenic/v1/lesson_pb";
+import { faultOf, lessonText } from "../../session/lesson_file";
+import { type KeepView, StepForm } from "./step_form";
+
+/** What the maker of lessons needs from its page. */
+export interface LessonMaking {
+  keep: KeepView;
+  /** Keeps a lesson in this browser and returns its name. Throws Error if there is no room. */
+  save(lesson: Lesson): string;
+  /** Plays a lesson of this browser. */
+  play(name: string): void;
+  /** Called when the maker is left. */
+  leave(): void;
+}
+
+/** Makes a lesson about the scene that is shown: its steps are views that are kept one after the other. */
+export class LessonMaker {
+  readonly element = make("section", { id: "lesson-maker", ariaLabel: "Make a lesson" });
+  private readonly title = make("input", { type: "text", id: "maker-title", maxLength: 200 });
+  private readonly summary = make("input", { type: "text", id: "maker-summary", maxLength: 500 });
+  private readonly steps = make("ol", { id: "maker-steps" });
+  private readonly words = make("div");
+  private readonly lesson: Lesson;
+
+  /** Starts with a copy of a lesson, or an empty one about `scene`. */
+  constructor(making: LessonMaking, scene: string, first?: Lesson) {
+    this.lesson = create(LessonSchema, first ?? { scene });
+    this.title.value = this.lesson.title;
+    this.summary.value = this.lesson.summary;
+    const form = new StepForm(making.keep, (step) => {
+      this.lesson.steps.push(step);
+      this.showSteps();
+    });
+    const buttons: [words: string, act: () => void][] = [
+      ["Save and play", () => this.withLesson((lesson) => making.play(making.save(lesson)))],
+      ["Save in this browser", () => this.withLesson((lesson) => this.tell(`Kept as “${making.save(lesson)}”.`))],
+      ["Save as file", () => this.withLesson(saveAsFile)],
+      ["Leave", () => making.leave()],
+    ];
+    const row = buttons.map(([words, onclick]) => make("button", { type: "button", onclick }, words));
+    this.element.append(
+      make("h2", {}, "Make a lesson"),
+      labelledRow("maker-title", "Title", this.title),
+      labelledRow("maker-summary", "What is learned", this.summary),
+      this.steps,
+      form.element,
+      this.words,
+      make("div", { className: "maker-buttons" }, ...row),
+    );
+    this.showSteps();
+  }
+
+  private withLesson(act: (lesson: Lesson) => void): void {
+    this.lesson.title = this.title.value.trim();
+    this.lesson.summary = this.summary.value.trim();
+    const fault = faultOf(this.lesson);
+    if (fault !== undefined) return this.words.replaceChildren(alertMessage(`The lesson is not complete: ${fault}.`));
+    try {
+      act(this.lesson);
+    } catch (error) {
+      this.words.replaceChildren(alertMessage(`${(error as Error).message}.`));
+    }
+  }
+
+  private tell(words: string): void {
+    const told = make("p", {}, words);
+    told.setAttribute("role", "status");
+    this.words.replaceChildren(told);
+  }
+
+  private showSteps(): void {
+    const { steps } = this.lesson;
+    const rows = steps.map((step, i) => {
+      const remove = () => {
+        steps.splice(i, 1);
+        this.showSteps();
+      };
+      const label = `Remove step ${i + 1}`;
+      const button = make(
+        "button",
+        { type: "button", className: "small", ariaLabel: label, onclick: remove },
+        "Remove",
+      );
+      return make("li", {}, make("span", {}, step.title), button);
+    });
+    this.steps.replaceChildren(...rows);
+    this.words.replaceChildren();
+  }
+}
+
+/** Saves a lesson as a file that this page opens. */
+export function saveAsFile(lesson: Lesson): void {
+  const name = lesson.title.toLowerCase().replaceAll(/[^a-z0-9]+/g, "-").replaceAll(/^-|-$/g, ""); // prettier-ignore
+  download(`${name || "lesson"}.json`, new Blob([lessonText(lesson)], { type: "application/json" }));
+}

@@ -1,0 +1,89 @@
+import { create } from "@bufbuild/protobuf";
+import { make } from "../../dom/elements";
+import { alertMessage, labelledRow } from "../../dom/rows";
+import { type LessonStep, LessonStepSchema, QuestionSchema } from "../../gen/phrenic/v1/lesson_pb";
+import { faultOfStep } from "../../session/lesson_file";
+
+/** What is shown now: view, preset and parameters, without words. */
+export type KeepView = () => Promise<LessonStep>;
+
+/** Returns a labelled field for a text of several lines. */
+function textRow(id: string, label: string, placeholder = ""): { row: HTMLElement; field: HTMLTextAreaElement } {
+  const field = make("textarea", { id, rows: 3, maxLength: 2000, placeholder });
+  return { row: make("div", { className: "text-row" }, make("label", { htmlFor: id }, label), field), field };
+}
+
+/** A form that keeps what is shown as a step of a lesson, with a title, a caption, a task and a question. */
+export class StepForm {
+  readonly element = make("form", { id: "step-form" });
+  private readonly title = make("input", { type: "text", id: "step-title", maxLength: 200 });
+  private readonly caption = textRow("step-caption", "Caption: what is seen, and why");
+  private readonly task = textRow("step-task", "Task (may be empty)");
+  private readonly words = make("input", { type: "text", id: "step-question", maxLength: 500 });
+  private readonly answers = textRow(
+    "step-answers",
+    "Answers: one a line, * before each right one; or one number, ± and its tolerance, and its unit",
+    "The left half pushes it.\n* It cannot pull against the pressure.",
+  );
+  private readonly explanation = make("input", { type: "text", id: "step-explanation", maxLength: 1000 });
+  private readonly fault = make("div");
+
+  /** Calls `add` with each step that is kept. */
+  constructor(
+    private readonly keep: KeepView,
+    private readonly add: (step: LessonStep) => void,
+  ) {
+    const question = make(
+      "details",
+      {},
+      make("summary", {}, "A question"),
+      labelledRow("step-question", "Question", this.words),
+      this.answers.row,
+      labelledRow("step-explanation", "Why it is right", this.explanation),
+    );
+    const submit = make("button", { type: "submit", id: "keep-view" }, "Keep this view as a step");
+    const rows = [labelledRow("step-title", "Title of the step", this.title), this.caption.row, this.task.row];
+    this.element.append(...rows, question, this.fault, submit);
+    this.element.onsubmit = (event) => {
+      event.preventDefault();
+      void this.submit();
+    };
+  }
+
+  private async submit(): Promise<void> {
+    const step = create(LessonStepSchema, { ...(await this.keep()), ...this.texts() });
+    const fault = this.questionFault() ?? faultOfStep(step);
+    this.fault.replaceChildren(...(fault === undefined ? [] : [alertMessage(`The step cannot be kept: ${fault}.`)]));
+    if (fault !== undefined) return;
+    this.element.reset();
+    this.add(step);
+  }
+
+  private texts() {
+    const question = this.words.value.trim() === "" ? undefined : this.question();
+    const [title, caption, task] = [this.title, this.caption.field, this.task.field].map(({ value }) => value.trim());
+    return { title, caption, task, question };
+  }
+
+  /** Answers without a question would be lost. */
+  private questionFault(): string | undefined {
+    const lost = this.words.value.trim() === "" && this.answers.field.value.trim() !== "";
+    return lost ? "question.words: there are answers without a question" : undefined;
+  }
+
+  private question() {
+    const [words, explanation] = [this.words.value.trim(), this.explanation.value.trim()];
+    return create(QuestionSchema, { words, explanation, ...answersOf(this.answers.field.value) });
+  }
+}
+
+/** Returns the answers of a text, one a line with "*" before right ones; or a number, as "1.5 ± 0.2 l". */
+export function answersOf(text: string) {
+  const number = /^([-−]?\d+(?:\.\d+)?)\s*(?:(?:±|\+-)\s*(\d+(?:\.\d+)?))?\s*([^\d\s*][^\n]*)?$/.exec(text.trim());
+  if (number !== null) {
+    const [, value, tolerance = "0", unit = ""] = number;
+    return { number: { value: Number(value.replace("−", "-")), tolerance: Number(tolerance), unit: unit.trim() } };
+  }
+  const lines = text.split("\n").map((line) => line.trim()).filter((line) => line !== ""); // prettier-ignore
+  return { answers: lines.map((line) => ({ words: line.replace(/^\*\s*/, ""), right: line.startsWith("*") })) };
+}
