@@ -1,4 +1,5 @@
 import { make } from "../../dom/elements";
+import { oneTabStop } from "../../dom/toolbar";
 import type { Parameters } from "../../gen/phrenic/v1/parameters_pb";
 import type { Preset } from "../../gen/phrenic/v1/scene_pb";
 import { presetCauses } from "../../parameters/causes";
@@ -12,9 +13,10 @@ const shownAtFirst = 8;
 /** Large buttons that choose a preset, grouped by cause: health, illness, a machine. */
 export class Choices {
   readonly element = make("section", { id: "choices", ariaLabel: "Choose a breath", hidden: true });
-  private readonly causes = make("div", { className: "causes", role: "group", ariaLabel: "Cause" });
-  private readonly list = make("div", { className: "choice-list", role: "group" });
+  private readonly causes = make("div", { className: "causes", ariaLabel: "Cause" });
+  private readonly list = make("div", { className: "choice-list" });
   private readonly description = make("p", { id: "choice-description" });
+  private readonly tabStops = [oneTabStop(this.causes), oneTabStop(this.list)];
   private members = new Map<string, Preset[]>();
   private cause = "";
   private unfolded = false;
@@ -50,6 +52,7 @@ export class Choices {
     }
     for (const button of this.list.querySelectorAll<HTMLElement>("[data-preset]"))
       button.ariaPressed = String(button.dataset.preset === active?.name);
+    for (const update of this.tabStops) update();
   }
 
   private show(cause: string): void {
@@ -63,6 +66,7 @@ export class Choices {
     if (members.length > shownAtFirst) this.list.append(this.moreButton(members.length - shownAtFirst));
     // A choice keeps the focus when the list is written again.
     if (focused !== undefined) this.list.querySelector<HTMLElement>(`[data-preset="${CSS.escape(focused)}"]`)?.focus();
+    for (const update of this.tabStops) update();
   }
 
   private causeButton(cause: string): HTMLElement {
