@@ -239,6 +239,9 @@ test("AViewIsKeptAsAStepAndTheLessonPlayed", async () => {
     type(form, id, value);
   submit(form);
   await settle();
+  press("Leave");
+  player.element.querySelector<HTMLElement>("#make-lesson")!.click();
+  await settle();
   expect(player.element.querySelector("#maker-steps")!.textContent).toContain("A deep breath");
   press("Save and play");
   expect(player.element.textContent).toContain("The lesson is not complete: title");

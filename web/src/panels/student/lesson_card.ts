@@ -39,6 +39,8 @@ export class LessonCard {
   private lesson: Lesson | undefined;
   /** Of the test before the lesson; undefined if it was not taken. */
   private before: Score | undefined;
+  /** A lesson that was left before it was kept. */
+  private draft: LessonMaker | undefined;
 
   constructor(private readonly actions: LessonActions) {
     this.list = new LessonList(actions, {
@@ -166,13 +168,19 @@ export class LessonCard {
   private async make(first: Lesson | undefined): Promise<void> {
     const { own, keep, names } = this.actions;
     const { scene } = await names();
+    const save = (lesson: Lesson) => {
+      const name = own.put(lesson);
+      this.draft = undefined;
+      return name;
+    };
     const making = {
       keep,
-      save: (lesson: Lesson) => own.put(lesson),
+      save,
       play: (name: string) => void this.start({ name, step: 1 }),
       leave: () => this.showList(),
     };
-    const { element } = new LessonMaker(making, scene, first);
+    if (first !== undefined || this.draft === undefined) this.draft = new LessonMaker(making, scene, first);
+    const { element } = this.draft;
     this.element.replaceChildren(element);
     element.querySelector("input")?.focus();
   }
