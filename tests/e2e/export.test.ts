@@ -53,6 +53,16 @@ test("ThePanelExportsTheSameFileAsTheCommandLine", async () => {
   expect(JSON.parse(await server.phrenic("exports", "list", "-o", "json")).exports).toEqual([]);
 });
 
+test("ThePageOfABreathIsTheSameFileFromThePanelAndTheCommandLine", async () => {
+  await viewer.page.selectOption("#export-format", "html");
+  await viewer.page.click("#export");
+  const link = viewer.page.locator('#export-link[download$=".html"]');
+  const [download] = await Promise.all([viewer.page.waitForEvent("download"), link.click()]);
+  const path = join(outFolder, "cube.html");
+  await server.phrenic("export", "cube", path);
+  expect((await readFile((await download.path())!)).equals(await readFile(path))).toBe(true);
+});
+
 test("AMotionDownloadedFromThePanelIsValid", async () => {
   await viewer.page.selectOption("#export-format", "glb");
   await viewer.page.click("#export");
