@@ -62,8 +62,8 @@ void AddMotion(CLI::App& command, MotionOptions& motion) {
   const v1::Quantity& start = *schema::QuantityOf(*request.FindFieldByName("start"));
   command.add_option("--at,--from", motion.start, FieldHelp(request, "start"))
       ->check(NumberIn(start.minimum(), start.maximum()));
-  CLI::Option* rate =
-      command.add_option("--fps", motion.frames_per_second, "frames per simulated second (10; .glb: 24 per breath, .html: 80)");
+  CLI::Option* rate = command.add_option("--fps", motion.frames_per_second,
+                                         "frames per simulated second (10; .glb: 24 per breath, .html: 80)");
   command.add_option("--every", motion.steps_per_frame, FieldHelp(request, "steps_per_frame"))
       ->check(NumberIn(1, 1'000'000))
       ->excludes(rate);

@@ -59,7 +59,8 @@ CommandFunction SetUpExport(CLI::App& command) {
   command.add_option("FILE", options->motion.file, "file to write; its ending sets the format" + ExportEndings())
       ->check(ExportFile())
       ->required();
-  command.add_option("--seconds", options->motion.seconds, "simulated time to record [s] (8; .html: one breath; 0 for one instant)");
+  command.add_option("--seconds", options->motion.seconds,
+                     "simulated time to record [s] (8; .html: one breath; 0 for one instant)");
   AddMotion(command, options->motion);
   command.add_flag("--detach", options->detach, "print the export's id and let it run on the server");
   return Bind(&Export, options);
