@@ -300,11 +300,13 @@ grpc::Status SessionService::PullSession(grpc::CallbackServerContext* context, c
 
 template <class Request>
 absl::StatusOr<std::shared_ptr<session::Session>> SessionService::AdmitTeacher(
-    const grpc::CallbackServerContext& context, const Request& request) {
+    const grpc::CallbackServerContext& context, const Request& request, bool alone) {
   auto call = AdmitToSession(guard_, table_, context, request);
   if (!call.ok()) return call.status();
   if (guard_.Owns(call->caller, request.session_id())) return std::move(call->session);
-  if (absl::Status control = call->session->CheckControl(request.control_token()); !control.ok()) return control;
+  absl::Status control = alone ? call->session->CheckSoleControl(request.control_token())
+                               : call->session->CheckControl(request.control_token());
+  if (!control.ok()) return control;
   return std::move(call->session);
 }
 
@@ -323,7 +325,7 @@ grpc::Status SessionService::SubmitAnswer(grpc::CallbackServerContext* context, 
 
 grpc::Status SessionService::ListAnswers(grpc::CallbackServerContext* context, const v1::ListAnswersRequest* request,
                                          v1::ListAnswersResponse* response) {
-  const auto session = AdmitTeacher(*context, *request);
+  const auto session = AdmitTeacher(*context, *request, request->include_names());
   if (!session.ok()) return ToGrpc(session.status());
   *response = (*session)->answer_book().List(request->lesson(), request->include_names());
   return grpc::Status::OK;
@@ -331,7 +333,7 @@ grpc::Status SessionService::ListAnswers(grpc::CallbackServerContext* context, c
 
 grpc::Status SessionService::DeleteAnswers(grpc::CallbackServerContext* context,
                                            const v1::DeleteAnswersRequest* request, v1::DeleteAnswersResponse*) {
-  const auto session = AdmitTeacher(*context, *request);
+  const auto session = AdmitTeacher(*context, *request, false);
   if (!session.ok()) return ToGrpc(session.status());
   (*session)->answer_book().Clear();
   return grpc::Status::OK;

@@ -89,10 +89,11 @@ class SessionService final {
   template <class Request, class Response, class Act>
   grpc::Status Change(const grpc::CallbackServerContext& context, const Request& request, Response* response, Act act);
 
-  // Admits a call that is for the teacher alone: the session's owner, or who controls it.
+  // Admits a call that is for the teacher: the account that owns the session, or who controls it; if `alone`, who alone
+  // controls it.
   template <class Request>
   absl::StatusOr<std::shared_ptr<session::Session>> AdmitTeacher(const grpc::CallbackServerContext& context,
-                                                                 const Request& request);
+                                                                 const Request& request, bool alone);
 
   session::Table& table_;
   AccessGuard& guard_;

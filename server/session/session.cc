@@ -156,6 +156,13 @@ absl::Status Session::CheckControl(std::string_view token) {
   return CallToChange(token, [] { return absl::OkStatus(); });
 }
 
+absl::Status Session::CheckSoleControl(std::string_view token) {
+  absl::StatusOr<v1::Control> control;
+  const auto check = [&](ControlBook& book, absl::Time now) { return book.CheckAlone(token, now); };
+  absl::Status called = loop_.Call([&] { control = loop_.ChangeControl(check); });
+  return called.ok() ? control.status() : called;
+}
+
 absl::StatusOr<v1::Control> Session::ChangeControl(
     absl::FunctionRef<absl::Status(ControlBook& book, absl::Time now)> act) {
   absl::StatusOr<v1::Control> control;

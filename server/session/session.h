@@ -133,6 +133,8 @@ class Session {
   // Returns OK if the token's bearer may change the session. Renews the bearer's time. Otherwise returns
   // PERMISSION_DENIED, or the error of store::Ownership::CheckLease.
   absl::Status CheckControl(std::string_view token);
+  // The same for the bearer who alone controls (ControlBook::CheckAlone).
+  absl::Status CheckSoleControl(std::string_view token);
   // Changes control by `act`, tells viewers, and returns the errors of `act`, or of Acknowledge. `act` runs on the
   // stepping thread, at the time `now` of the session's clock. Also waits until the change is in the store.
   absl::StatusOr<v1::Control> ChangeControl(absl::FunctionRef<absl::Status(ControlBook& book, absl::Time now)> act);

@@ -46,6 +46,19 @@ TEST_F(ClassAnswersTest, APupilAnswersAndOnlyTheTeacherReads) {
   EXPECT_EQ(listed.answers_size(), 0);
 }
 
+TEST_F(ClassAnswersTest, NamesAreForWhoControlsAlone) {
+  v1::SubmitAnswerResponse submitted;
+  ASSERT_TRUE(
+      Call(*sessions_, &Sessions::SubmitAnswer, absl::StrCat("session_id: 'class' ", kAnswer), &submitted).ok());
+  v1::HandControlResponse handed;
+  ASSERT_TRUE(Call(*control_, &v1::ControlService::Stub::HandControl, anna_ + "everybody: true", &handed).ok());
+  v1::ListAnswersResponse listed;
+  EXPECT_TRUE(Call(*sessions_, &Sessions::ListAnswers, "session_id: 'class'", &listed).ok());
+  const auto refused = Call(*sessions_, &Sessions::ListAnswers, "session_id: 'class' include_names: true", &listed);
+  EXPECT_EQ(refused.error_code(), grpc::PERMISSION_DENIED);
+  EXPECT_THAT(refused.error_message(), HasSubstr("take control first"));
+}
+
 TEST_F(ClassAnswersTest, ErrorsNameTheFieldOrTheSession) {
   v1::SubmitAnswerResponse submitted;
   const auto refused = [&](const std::string& text) {

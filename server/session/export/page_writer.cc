@@ -73,7 +73,7 @@ absl::Status PageWriter::End(const std::function<absl::Status(double share)>& re
   std::string page;
   for (std::size_t i = 0; i < frames_.size() && (i == 0 || page.size() > kPageBytes); ++i) {
     page = MakePage(frames_[i]);
-    const absl::Status go_on = report(static_cast<double>(i + 1) / static_cast<double>(frames_.size()));
+    absl::Status go_on = report(static_cast<double>(i + 1) / static_cast<double>(frames_.size()));
     if (!go_on.ok()) return go_on;
   }
   return sink_(page);

@@ -141,6 +141,21 @@ describe("the results of a class", () => {
     element.remove();
   });
 
+  test("GoOnWithoutNamesIfTheServerRefusesThose", async () => {
+    const list = async (_: string, names: boolean) => {
+      if (names) throw new Error("take control first");
+      return [given(1, 0)];
+    };
+    const { element } = await opened(list as never);
+    const names = element.querySelector<HTMLInputElement>('input[role="switch"]')!;
+    names.click();
+    await settle();
+    expect(element.querySelector("[role=alert]")!.textContent).toBe("take control first");
+    expect(names.checked).toBe(false);
+    expect(element.textContent).toContain("1 answered");
+    element.remove();
+  });
+
   test("SayWhyTheServerRefuses", async () => {
     const { element } = await opened(() => Promise.reject(new Error("Anna controls this session")));
     expect(element.querySelector("[role=alert]")!.textContent).toBe("Anna controls this session");

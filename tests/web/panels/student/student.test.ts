@@ -3,13 +3,14 @@ import { beforeEach, expect, test, vi } from "vitest";
 import { sceneNames, whenShown } from "../../../../web/src/app/lesson_scene";
 import { LayerStyles } from "../../../../web/src/appearance/layer_styles";
 import { AnswerPhase } from "../../../../web/src/gen/phrenic/v1/answers_pb";
-import { LessonStepSchema } from "../../../../web/src/gen/phrenic/v1/lesson_pb";
+import { type Lesson, LessonSchema, LessonStepSchema } from "../../../../web/src/gen/phrenic/v1/lesson_pb";
 import { ParametersSchema } from "../../../../web/src/gen/phrenic/v1/parameters_pb";
 import { type Preset, PresetSchema } from "../../../../web/src/gen/phrenic/v1/scene_pb";
 import { SessionSchema } from "../../../../web/src/gen/phrenic/v1/session_pb";
 import { Choices } from "../../../../web/src/panels/student/choices";
 import { compareButton } from "../../../../web/src/panels/student/compare_button";
 import { LessonCard } from "../../../../web/src/panels/student/lesson_card";
+import { LessonMaker } from "../../../../web/src/panels/student/lesson_maker";
 import { sliders } from "../../../../web/src/panels/student/sliders";
 import { fetchJson } from "../../../../web/src/session/lessons";
 import { OwnLessons } from "../../../../web/src/session/own_lessons";
@@ -253,6 +254,25 @@ test("AViewIsKeptAsAStepAndTheLessonPlayed", async () => {
   const [step] = own.get("my-tiefe-atemzu-ge")!.steps;
   expect(step).toMatchObject({ preset: "deep", view: { cut: "coronal", cutPosition: 0.4 } });
   expect(step.question!.number).toMatchObject({ value: 5, tolerance: 1, unit: "cm" });
+});
+
+test("StepsOfALessonAreRemovedAndMovedToAnEarlierPlace", () => {
+  const steps = ["One", "Two", "Three"].map((title) => ({ title, caption: "Seen." }));
+  const first = create(LessonSchema, { title: "Three", scene: "thorax", steps });
+  const saved: string[] = [];
+  const making = {
+    keep: async () => create(LessonStepSchema),
+    save: ({ steps: kept }: Lesson) => `${saved.push(...kept.map(({ title }) => title))}`,
+    play: () => undefined,
+    leave: () => undefined,
+  };
+  const { element } = new LessonMaker(making, "thorax", first);
+  const press = (words: string, place = 0) =>
+    [...element.querySelectorAll("button")].filter((each) => each.textContent === words)[place].click();
+  press("Earlier", 1);
+  press("Remove");
+  press("Save in this browser");
+  expect(saved).toEqual(["Three", "Two"]);
 });
 
 test("ALessonOfAnotherBrowserIsAskedForAsAFile", async () => {

@@ -15,6 +15,8 @@ export type ListAnswers = (lesson: string, includeNames: boolean) => Promise<Cla
 export class ClassResults {
   readonly element = make("details", { id: "class-results" });
   private readonly body = make("div", { className: "class-results" });
+  /** Why names are refused. */
+  private readonly fault = make("div");
   private readonly names: HTMLInputElement;
   private readonly tools: HTMLElement;
   private timer: ReturnType<typeof setInterval> | undefined;
@@ -22,13 +24,15 @@ export class ClassResults {
   private answers: ClassAnswer[] = [];
 
   constructor(private readonly list: ListAnswers) {
-    const { row, input } = switchRow("Names", "Shows who gave which answer, of those who gave a name", () =>
-      this.refresh(),
-    );
+    const help = "Shows who gave which answer, of those who gave a name";
+    const { row, input } = switchRow("Names", help, () => {
+      this.fault.replaceChildren();
+      void this.refresh();
+    });
     this.names = input;
     const save = make("button", { type: "button", onclick: () => this.save() }, "Save as CSV");
     this.tools = make("div", { className: "row" }, row, save);
-    this.element.append(make("summary", {}, "Answers of the class"), this.body, this.tools);
+    this.element.append(make("summary", {}, "Answers of the class"), this.body, this.fault, this.tools);
     this.element.ontoggle = () => this.watch();
   }
 
@@ -58,10 +62,19 @@ export class ClassResults {
       this.body.replaceChildren(...this.results(shown.lesson.steps[shown.step - 1]?.question, shown.step));
       this.tools.hidden = false;
     } catch (error) {
-      this.stop();
-      this.tools.hidden = true;
-      this.body.replaceChildren(alertMessage((error as Error).message));
+      this.refuse((error as Error).message);
     }
+  }
+
+  /** Shows why there are no answers; they go on without names if only those are refused. */
+  private refuse(reason: string): void {
+    if (this.names.checked) {
+      this.names.checked = false;
+      return this.fault.replaceChildren(alertMessage(reason));
+    }
+    this.stop();
+    this.tools.hidden = true;
+    this.body.replaceChildren(alertMessage(reason));
   }
 
   private stop(): void {

@@ -90,7 +90,7 @@ export class LessonCard {
     const title = make("h3", { tabIndex: -1 }, step.title);
     const task = step.task === "" ? [] : [make("p", { className: "task" }, make("b", {}, "Try: "), step.task)];
     const answered = (answer: GivenAnswer) => this.send(place.step, AnswerPhase.UNSPECIFIED, answer);
-    const question = step.question === undefined ? [] : [questionForm(step.question, answered)];
+    const question = step.question === undefined ? [] : [questionForm(step.question, answered), answerNote()];
     const caption = make("p", { className: "caption" }, step.caption);
     const parts = [title, caption, ...task, ...question, ...this.testFirst(lesson, place)];
     this.element.replaceChildren(this.head(lesson, place), ...parts, this.results.element, this.buttons(place));
@@ -184,4 +184,9 @@ export class LessonCard {
     this.element.replaceChildren(element);
     element.querySelector("input")?.focus();
   }
+}
+
+function answerNote(): HTMLElement {
+  const words = "Your teacher can see your answer, with your name only if you gave one.";
+  return make("p", { className: "faint" }, words);
 }

@@ -1,4 +1,4 @@
-import { create } from "@bufbuild/protobuf";
+import { clone, create } from "@bufbuild/protobuf";
 import { download } from "../../dom/download";
 import { make } from "../../dom/elements";
 import { alertMessage, labelledRow } from "../../dom/rows";
@@ -28,7 +28,7 @@ export class LessonMaker {
 
   /** Starts with a copy of a lesson, or an empty one about `scene`. */
   constructor(making: LessonMaking, scene: string, first?: Lesson) {
-    this.lesson = create(LessonSchema, first ?? { scene });
+    this.lesson = first === undefined ? create(LessonSchema, { scene }) : clone(LessonSchema, first);
     this.title.value = this.lesson.title;
     this.summary.value = this.lesson.summary;
     const form = new StepForm(making.keep, (step) => {
@@ -79,17 +79,21 @@ export class LessonMaker {
         steps.splice(i, 1);
         this.showSteps();
       };
-      const label = `Remove step ${i + 1}`;
-      const button = make(
-        "button",
-        { type: "button", className: "small", ariaLabel: label, onclick: remove },
-        "Remove",
-      );
-      return make("li", {}, make("span", {}, step.title), button);
+      const earlier = () => {
+        steps.splice(i - 1, 2, steps[i], steps[i - 1]);
+        this.showSteps();
+      };
+      const buttons = [stepButton("Remove", i, remove), ...(i > 0 ? [stepButton("Earlier", i, earlier)] : [])];
+      return make("li", {}, make("span", {}, step.title), ...buttons);
     });
     this.steps.replaceChildren(...rows);
     this.words.replaceChildren();
   }
+}
+
+function stepButton(verb: string, index: number, onclick: () => void): HTMLElement {
+  const ariaLabel = `${verb}: step ${index + 1}`;
+  return make("button", { type: "button", className: "small", ariaLabel, onclick }, verb);
 }
 
 /** Saves a lesson as a file that this page opens. */
