@@ -50,10 +50,10 @@ class ExporterTest : public testing::Test {
     return std::string(refused.status().message());
   }
 
-  // Writes a template of pages.
-  static std::string WriteTemplate() {
+  // Writes a template of pages, with `padding` more bytes.
+  static std::string WriteTemplate(std::size_t padding = 0) {
     const std::string path = testing::TempDir() + "/offline.html";
-    std::ofstream(path) << "<p>before</p>__PHRENIC_MOTION__<p>after</p>";
+    std::ofstream(path) << std::string(padding, ' ') << "<p>before</p>__PHRENIC_MOTION__<p>after</p>";
     return path;
   }
 
@@ -195,6 +195,14 @@ TEST_F(ExporterTest, EqualRunsHaveEqualPages) {
   const std::string first = file_;
   ASSERT_TRUE(Export().ok());
   EXPECT_EQ(file_, first);
+}
+
+TEST_F(ExporterTest, APageThatIsTooLargeHasTheCoarsestBound) {
+  request_.set_format("html");
+  page_ = WriteTemplate(kPageBytes);
+  ASSERT_TRUE(Export().ok());
+  EXPECT_EQ(Motion().frames(0).max_error_mm(), 1);
+  EXPECT_EQ(Motion().frames_size(), 21) << "80 in a breath of 4 s";
 }
 
 TEST_F(ExporterTest, APageIsRefusedWithoutTheViewerAndWithChosenBodies) {
