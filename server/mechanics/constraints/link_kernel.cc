@@ -76,7 +76,7 @@ HWY_INLINE std::uint64_t Correct(const LinkPacket& packet, int first, const Link
                                     : hn::Gt(hn::Mul(hn::Set(d, static_cast<double>(packet.sign)), excess), zero);
   const auto moves = hn::And(hn::And(reaches, off), hn::Gt(inverse_mass, zero));
   const auto by = hn::IfThenElse(moves, hn::Mul(sum, inverse_mass), hn::Set(d, 1.0));
-  const auto scale = hn::IfThenElseZero(moves, hn::Div(excess, by));
+  const auto scale = hn::IfThenElseZero(moves, hn::Mul(hn::Div(excess, by), hn::Set(d, packet.relaxation)));
   Store(Scaled(scale, direction), first, impulses);
   std::uint8_t missed[8];
   hn::StoreMaskBits(d, hn::AndNot(reaches, off), missed);

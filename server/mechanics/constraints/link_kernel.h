@@ -24,6 +24,7 @@ struct alignas(64) LinkPacket {
   int first = 0;                                                      // index of its first link
   bool pairs = false;                                                 // all links are pairs (IsPair)
   int sign = 0;                                                       // of all its links (Link::sign)
+  double relaxation = 1;                                              // factor of its corrections
 };
 
 // One vector per link of a packet, such as its direction at the start of the step [m].

@@ -12,6 +12,7 @@
 namespace phrenic {
 namespace {
 
+constexpr double kRelaxation = 1.4;  // successive over-relaxation: errors over many links leave sooner
 constexpr double kTolerated = 0.05;  // of the longest link: more is no longer what sweeps leave
 
 // Returns the links by colour: links of one colour have no common movable vertex. Each takes the first colour that is
@@ -56,7 +57,8 @@ SweptLinks::SweptLinks(std::string name, const std::vector<Link>& links, int swe
   for (std::vector<Link>& colour : ByColour(links)) {
     std::stable_sort(colour.begin(), colour.end(), [](const Link& p, const Link& q) { return p.a < q.a; });
     colour_start_.push_back(packets_.size());
-    const std::vector<LinkPacket> packets = PackLinks(colour, static_cast<int>(links_.size()), false);
+    std::vector<LinkPacket> packets = PackLinks(colour, static_cast<int>(links_.size()), false);
+    for (LinkPacket& packet : packets) packet.relaxation = kRelaxation;
     packets_.insert(packets_.end(), packets.begin(), packets.end());
     links_.insert(links_.end(), colour.begin(), colour.end());
   }
