@@ -40,6 +40,8 @@ class Constraint {
   virtual bool SameMotion(const ConstPoints& /*before*/, const ConstPoints& /*after*/) const { return smooth(); }
   // Returns the largest violation [m].
   virtual double Residual(const State& state) const = 0;
+  // Returns the largest violation [m] that its projection may leave in a scene of this size [m]; more is a warning.
+  virtual double tolerated(double size) const { return 1e-6 * size; }
 
  protected:
   explicit Constraint(std::string name) : name_(std::move(name)) {}

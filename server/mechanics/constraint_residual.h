@@ -19,8 +19,9 @@ struct ConstraintResidual {
 // contradict each other or are switched off. Thread-safe.
 ConstraintResidual LargestResidual(const Model& model, const State& state);
 
-// Returns what is wrong and the remedy if the violation is more than what projections leave, 1e-6 of the scene's size;
-// empty if it is not, or if the parameters switch the constraints off. For people: a warning of every output.
+// Returns what is wrong and the remedy if the violation is more than what the constraint's projection may leave
+// (Constraint::tolerated); empty if it is not, or if the parameters switch the constraints off. For people: a warning
+// of every output.
 std::string ResidualWarning(const Model& model, const v1::Parameters& parameters, const ConstraintResidual& residual);
 
 }  // namespace phrenic

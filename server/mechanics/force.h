@@ -77,6 +77,10 @@ class Force {
   // `tick` counts such steps. A function of these arguments only: a run that is restored goes on bit for bit.
   virtual void AdvanceScalars(const EvalContext& /*end*/, std::int64_t /*tick*/, double /*dt*/,
                               ScalarState& /*scalars*/) const {}
+  // Sets the rate [unit/s] of each scalar that AdvanceScalars integrates, for solvers that integrate it themselves:
+  // AdvanceScalars over `dt` adds dt times this rate, to first order. Leaves alone scalars that change in jumps, which
+  // AdvanceScalars sets at any `dt`, 0 included.
+  virtual void SetScalarRates(const EvalContext&, Eigen::VectorXd& /*rates*/) const {}
   // True if AdvanceScalars changes some.
   virtual bool advances_scalars() const { return false; }
 

@@ -9,6 +9,7 @@
 #include "server/mechanics/skinning/tissue_bodies.h"
 #include "server/study/error_rows.h"
 #include "server/study/reference.h"
+#include "server/study/refined_reference.h"
 #include "server/study/subject.h"
 
 namespace phrenic::study {
@@ -31,6 +32,7 @@ void ProjectLinks(v1::Projection projection, v1::Scene& scene) {
 void UseDoublePrecision(v1::Scene& scene) {
   for (v1::Force& force : *scene.mutable_forces()) {
     if (force.has_springs()) force.mutable_springs()->set_precision(v1::PRECISION_DOUBLE);
+    if (force.has_muscle()) force.mutable_muscle()->set_precision(v1::PRECISION_DOUBLE);
   }
 }
 
@@ -46,7 +48,8 @@ absl::StatusOr<ReferenceSolution> MakeReference(const v1::CreateStudyRequest& re
   ReferenceSolution solution;
   solution.moments = Moments(study.seconds(), study.moments());
   v1::Reference& report = *table.mutable_reference();
-  auto trajectory = ConfirmedReference(*exact, solution.moments, study.tolerance(), progress, report);
+  const auto solve = IsSmooth(*exact->model) ? ConfirmedReference : RefinedReference;
+  auto trajectory = solve(*exact, solution.moments, study.tolerance(), progress, report);
   if (!trajectory.ok()) return trajectory.status();
   solution.trajectory = *std::move(trajectory);
   solution.error_rms = 1e-3 * report.error_rms_mm();

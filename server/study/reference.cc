@@ -22,6 +22,7 @@ namespace phrenic::study {
 namespace {
 
 constexpr double kMaxVelocityRatio = 10;  // largest ratio of the tolerances of velocities and positions [1/s]
+constexpr double kScalarRatio = 10;       // of the tolerances of scalars, in their SI unit, and positions [unit/m]
 constexpr int kStop = -1;                 // CVODE: unrecoverable error
 constexpr int kRetry = 1;                 // CVODE: recoverable error, retry with a smaller step
 
@@ -34,10 +35,24 @@ struct Problem {
   bool cancelled = false;
 };
 
-// The positions (half 0) or velocities (half 1) of the unknowns, 3 x n.
-Eigen::Map<Points> Half(N_Vector y, int half) {
-  const Eigen::Index n = N_VGetLength(y) / 6;
+// The unknowns y: positions and velocities of n vertices, then scalars.
+Eigen::Index VerticesOf(const Acceleration& acceleration) {
+  return static_cast<Eigen::Index>(acceleration.free().size());
+}
+
+// The positions (half 0) or velocities (half 1), 3 x n.
+Eigen::Map<Points> Half(const Problem& problem, N_Vector y, int half) {
+  const Eigen::Index n = VerticesOf(problem.acceleration);
   return {N_VGetArrayPointer(y) + 3 * n * half, 3, n};
+}
+
+Eigen::Map<Eigen::VectorXd> Scalars(const Problem& problem, N_Vector y) {
+  return {N_VGetArrayPointer(y) + 6 * VerticesOf(problem.acceleration),
+          static_cast<Eigen::Index>(problem.acceleration.scalars().size())};
+}
+
+const State& SetState(Problem& problem, double t, N_Vector y) {
+  return problem.acceleration.SetState(t, Half(problem, y, 0), Half(problem, y, 1), Scalars(problem, y));
 }
 
 int Evaluate(realtype t, N_Vector y, N_Vector derivative, void* user) {
@@ -48,10 +63,10 @@ int Evaluate(realtype t, N_Vector y, N_Vector derivative, void* user) {
     problem.cancelled = true;
     return kStop;
   }
-  problem.acceleration.SetState(t, Half(y, 0), Half(y, 1));
-  Half(derivative, 0) = Half(y, 1);
-  problem.acceleration.Evaluate(Half(derivative, 1));
-  return Half(derivative, 1).allFinite() ? 0 : kRetry;
+  SetState(problem, t, y);
+  Half(problem, derivative, 0) = Half(problem, y, 1);
+  problem.acceleration.Evaluate(Half(problem, derivative, 1), Scalars(problem, derivative));
+  return Half(problem, derivative, 1).allFinite() && Scalars(problem, derivative).allFinite() ? 0 : kRetry;
 }
 
 // CVODE's name of a return code. The caller owns the C string that CVODE returns.
@@ -65,18 +80,16 @@ class Solver {
  public:
   Solver(const Model& model, const State& start, Problem& problem, double tolerance, double omega) : problem_(problem) {
     SUNContext_Create(nullptr, &context_);
-    const auto n = static_cast<Eigen::Index>(problem.acceleration.free().size());
-    y_ = N_VNew_Serial(6 * n, context_);
-    scale_ = N_VNew_Serial(6 * n, context_);
-    // CVODE bounds the RMS of all errors: divided by sqrt(6 n), it bounds each of them by the tolerance.
-    const double each = tolerance / std::sqrt(6.0 * static_cast<double>(n));
-    Half(scale_, 0).setConstant(each);
-    Half(scale_, 1).setConstant(each * std::clamp(omega, 1.0, kMaxVelocityRatio));
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const int vertex = problem.acceleration.free()[static_cast<size_t>(i)];
-      Half(y_, 0).col(i) = start.x.col(vertex) - model.rest.col(vertex);
-      Half(y_, 1).col(i) = start.v.col(vertex);
-    }
+    const Acceleration& acceleration = problem.acceleration;
+    const auto unknowns = static_cast<Eigen::Index>(6 * acceleration.free().size() + acceleration.scalars().size());
+    y_ = N_VNew_Serial(unknowns, context_);
+    scale_ = N_VNew_Serial(unknowns, context_);
+    // CVODE bounds the RMS of all errors: divided by the root of their number, it bounds each of them by the tolerance.
+    const double each = tolerance / std::sqrt(static_cast<double>(unknowns));
+    Half(problem, scale_, 0).setConstant(each);
+    Half(problem, scale_, 1).setConstant(each * std::clamp(omega, 1.0, kMaxVelocityRatio));
+    Scalars(problem, scale_).setConstant(each * kScalarRatio);
+    Start(model, start);
     cvode_ = CVodeCreate(CV_ADAMS, context_);
     iteration_ = SUNNonlinSol_FixedPoint(y_, 0, context_);
     ok_ = CVodeInit(cvode_, &Evaluate, 0, y_) == CV_SUCCESS && CVodeSVtolerances(cvode_, each, scale_) == CV_SUCCESS &&
@@ -107,10 +120,22 @@ class Solver {
           absl::StrFormat("the reference solver failed at %.4g s (CVODE: %s): shorten the study or raise the tolerance",
                           reached, OutcomeName(outcome)));
     }
-    return problem_.acceleration.SetState(time, Half(y_, 0), Half(y_, 1));
+    return SetState(problem_, time, y_);
   }
 
  private:
+  void Start(const Model& model, const State& start) {
+    const Acceleration& acceleration = problem_.acceleration;
+    for (Eigen::Index i = 0; i < VerticesOf(acceleration); ++i) {
+      const int vertex = acceleration.free()[static_cast<size_t>(i)];
+      Half(problem_, y_, 0).col(i) = start.x.col(vertex) - model.rest.col(vertex);
+      Half(problem_, y_, 1).col(i) = start.v.col(vertex);
+    }
+    for (size_t i = 0; i < acceleration.scalars().size(); ++i) {
+      Scalars(problem_, y_)[static_cast<Eigen::Index>(i)] = start.scalars.q[acceleration.scalars()[i]];
+    }
+  }
+
   Problem& problem_;
   SUNContext context_ = nullptr;
   N_Vector y_ = nullptr, scale_ = nullptr;

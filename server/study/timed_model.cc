@@ -79,6 +79,9 @@ class TimedKind : public Kind {
     const Span span(adding_, false);
     force_.AdvanceScalars(end, tick, dt, scalars);
   }
+  void SetScalarRates(const EvalContext& at, Eigen::VectorXd& rates) const override {
+    force_.SetScalarRates(at, rates);
+  }
   bool advances_scalars() const override { return force_.advances_scalars(); }
   double Energy(const EvalContext& at) const override { return force_.Energy(at); }
   bool conservative() const override { return force_.conservative(); }
@@ -131,6 +134,7 @@ class TimedConstraint final : public Constraint {
     constraint_.ProjectVelocities(parameters, scratch, state);
   }
   bool smooth() const override { return constraint_.smooth(); }
+  double tolerated(double size) const override { return constraint_.tolerated(size); }
   void ListLinks(std::vector<Link>& links) const override { constraint_.ListLinks(links); }
   bool SameMotion(const ConstPoints& before, const ConstPoints& after) const override {
     return constraint_.SameMotion(before, after);

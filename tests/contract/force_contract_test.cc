@@ -214,6 +214,23 @@ TEST_P(ForceContract, DampingIsTheForcesPartInVelocity) {
   EXPECT_LT((ForceAt(state_) - ForceAt(still) + damped).cwiseAbs().maxCoeff(), GetParam().rounding);
 }
 
+// What AdvanceScalars adds over a short time is that time times the rates; what it leaves at a time of 0 is no jump.
+TEST_P(ForceContract, ScalarRatesAreThoseOfItsSteps) {
+  const Force& force = *model_->forces.front();
+  if (!force.advances_scalars()) GTEST_SKIP() << "has no scalars of its own";
+  constexpr double kTime = 1e-7;
+  const EvalContext at = MakeEvalContext(*model_, model_->parameters, state_);
+  Eigen::VectorXd rates = Eigen::VectorXd::Zero(state_.scalars.q.size());
+  force.SetScalarRates(at, rates);
+  ScalarState start = state_.scalars;
+  force.AdvanceScalars(at, 0, 0, start);
+  ScalarState end = start;
+  force.AdvanceScalars(at, 0, kTime, end);
+  for (Eigen::Index i = 0; i < rates.size(); ++i) {
+    EXPECT_NEAR((end.q[i] - start.q[i]) / kTime, rates[i], 1e-4 * std::abs(rates[i]) + 1e-7) << i;
+  }
+}
+
 TEST_P(ForceContract, AllocatesNothing) {
   Points f = Points::Zero(3, state_.x.cols());
   Eigen::VectorXd c = Eigen::VectorXd::Zero(state_.x.cols());

@@ -104,5 +104,49 @@ TEST(Limits, MakeAStringOfManyPieces) {
   EXPECT_LT(LargestResidual(*model, state).metres, 1e-9);
 }
 
+// A net held at two corners under gravity, of threads that do not stretch, restored in so many sweeps a step.
+State SweptNet(int sweeps, double dt, double seconds, double* residual) {
+  const auto model = CompileText(absl::StrFormat(
+      "name: 'net' bodies { name: 'net' role: ROLE_DEFORMABLE mass: 108 fixed_vertices: [0, 11] grid { columns: 12 "
+      "rows: 9 u { x: 0.1 } v { y: 0.1 } } } forces { gravity { bodies: 'net' acceleration { z: -9.81 } } } forces { "
+      "friction { bodies: 'net' rate: 2 } } constraints { length_limits { body: 'net' at_most_ratio: 1 %s } }",
+      sweeps > 0 ? absl::StrFormat("sweeps: %d", sweeps) : ""));
+  State state = RunTo(*model, seconds, dt);
+  *residual = LargestResidual(*model, state).metres;
+  return state;
+}
+
+TEST(SweptLimits, HangAsThoseThatAreSolvedSimultaneouslyTheMoreSoTheShorterTheStep) {
+  double exactly = 0, coarse = 0, fine = 0;
+  const State exact = SweptNet(0, 1e-3, 6, &exactly);
+  const State swept = SweptNet(2, 1e-3, 6, &coarse), finer = SweptNet(2, 2.5e-4, 6, &fine);
+  EXPECT_GT(coarse, 1e-5) << "sweeps leave an error";
+  EXPECT_LT(coarse, 5e-3) << "of a twentieth of a thread's length";
+  EXPECT_LT(fine, coarse / 3);
+  const double apart = (swept.x - exact.x).cwiseAbs().maxCoeff();
+  EXPECT_LT((finer.x - exact.x).cwiseAbs().maxCoeff(), apart / 2);
+}
+
+TEST(SweptLimits, DoNotHoldWhatIsPushedTogether) {
+  const auto model = CompileText(
+      "name: 'pair' bodies { name: 'pair' role: ROLE_DEFORMABLE mass: 2 polyhedron { vertices { } vertices { x: 1 } "
+      "edges { a: 0 b: 1 } } } constraints { length_limits { body: 'pair' at_most_ratio: 1 sweeps: 3 } }");
+  State state = model->InitialState();
+  state.v(0, 0) = 0.5;
+  Workspace work = model->MakeWorkspace();
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(Step(*model, model->parameters, 1e-2, state, work).ok());
+  EXPECT_NEAR(state.x(0, 0), 0.5, 1e-12);
+  EXPECT_EQ(state.x(0, 1), 1);
+}
+
+TEST(SweptLimits, AreRefusedWithTheThesisProjection) {
+  const auto refused = TryCompileText(
+      "name: 'pair' bodies { name: 'pair' role: ROLE_DEFORMABLE mass: 2 polyhedron { vertices { } vertices { x: 1 } "
+      "} } constraints { rigid_links { body: 'pair' list { links { a: 0 b: 1 } } projection: PROJECTION_THESIS sweeps: "
+      "2 } }");
+  EXPECT_EQ(refused.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_NE(refused.status().message().find("rigid_links.sweeps"), std::string::npos) << refused.status();
+}
+
 }  // namespace
 }  // namespace phrenic

@@ -76,6 +76,50 @@ TEST(ErrorStudy, FindsThePublishedOrders) {
   EXPECT_LT(result->error().reference().error_max_mm(), 1e-5);
 }
 
+// A strip of muscle whose activation follows the breath with a delay, and whose force depends on the rate of its
+// fibres: both are scalars of the state.
+const char kStrip[] = R"(
+  name: "strip" title: "Strip"
+  bodies {
+    name: "b" role: ROLE_DEFORMABLE mass: 0.2 fixed_regions: "left"
+    grid { columns: 5 rows: 3 u { x: 0.02 } v { y: 0.02 } }
+    regions { name: "left" low { x: -1 y: -1 z: -1 } high { x: 0.001 y: 1 z: 1 } }
+    regions { name: "right" low { x: 0.07 y: -1 z: -1 } high { x: 1 y: 1 z: 1 } }
+  }
+  forces {
+    muscle { body: "b" from_region: "left" tendon_region: "right" activation_time: 0.05 precision: PRECISION_DOUBLE }
+  }
+  forces { friction { bodies: "b" rate: 8 } }
+  breath { waveform: WAVEFORM_RAISED_COSINE }
+  parameters { breath_length: 1 diaphragm_activation: 0.3 }
+)";
+
+TEST(ErrorStudy, IntegratesScalarsInTheReferenceToo) {
+  v1::CreateStudyRequest request = ErrorRequest(0.4, 4);
+  request.mutable_error()->set_tolerance(1e-8);
+  request.mutable_error()->add_integrators(v1::INTEGRATOR_SEMI_IMPLICIT_EULER);
+  const auto result = RunOn(kStrip, request);
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_THAT(result->error().reference().method(), HasSubstr("CVODE"));
+  EXPECT_GT(result->error().reference().largest_displacement_mm(), 3) << "the muscle of the reference contracts";
+  EXPECT_NEAR(Orders(result->error())["semi_implicit_euler"], 1, 0.15);
+  EXPECT_LT(result->error().rows(3).error_max_mm(), 0.02 * result->error().reference().largest_displacement_mm());
+}
+
+// No ODE solver can make a reference where a thread is taut at one moment and slack at the next.
+TEST(ErrorStudy, RefinesTheStepForAReferenceWithLimits) {
+  v1::CreateStudyRequest request = ErrorRequest(1, 4);
+  request.mutable_error()->set_tolerance(1e-6);
+  request.mutable_error()->add_integrators(v1::INTEGRATOR_SEMI_IMPLICIT_EULER);
+  const std::string limits = "constraints { length_limits { body: 'b' list { links { a: 0 b: 2 } } at_most_ratio: 1 } }";
+  const auto result = RunOn(kSwing + limits, request);
+  ASSERT_TRUE(result.ok()) << result.status();
+  const v1::Reference& reference = result->error().reference();
+  EXPECT_THAT(reference.method(), HasSubstr("velocity Verlet"));
+  EXPECT_LT(reference.error_max_mm(), 0.01);
+  EXPECT_NEAR(Orders(result->error())["semi_implicit_euler"], 1, 0.3);
+}
+
 TEST(ErrorStudy, RecommendsAnIntegrator) {
   v1::CreateStudyRequest request = ErrorRequest(1, 6);
   request.mutable_error()->set_target(1e-5);

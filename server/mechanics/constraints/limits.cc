@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/constraints/swept_links.h"
 
 namespace phrenic {
 namespace {
@@ -48,6 +49,7 @@ absl::StatusOr<std::unique_ptr<Constraint>> Limits::Make(const v1::LengthLimits&
     builder.ReportLeftOut(name, "no edge with a movable vertex has both vertices in the region");
     return nullptr;
   }
+  if (scene.sweeps() > 0) return SweptLinks::Make(name, limits, scene.sweeps(), builder);
   std::unique_ptr<Limits> constraint(new Limits(name));
   constraint->network_ = LinkNetwork(limits);
   if (!constraint->network_.complete()) return TooTangled(path, limits.size());

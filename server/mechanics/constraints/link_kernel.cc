@@ -72,12 +72,14 @@ HWY_INLINE std::uint64_t Correct(const LinkPacket& packet, int first, const Link
   const auto reaches = hn::And(hn::Gt(along, zero), hn::Ge(discriminant, zero));
   const auto sum = hn::Add(along, hn::Sqrt(hn::Max(discriminant, zero)));
   const auto inverse_mass = hn::Add(hn::Load(d, packet.inverse_a + first), hn::Load(d, packet.inverse_b + first));
-  const auto moves = hn::And(reaches, hn::Gt(inverse_mass, zero));
+  const auto off = packet.sign == 0 ? hn::Ge(inverse_mass, zero)
+                                    : hn::Gt(hn::Mul(hn::Set(d, static_cast<double>(packet.sign)), excess), zero);
+  const auto moves = hn::And(hn::And(reaches, off), hn::Gt(inverse_mass, zero));
   const auto by = hn::IfThenElse(moves, hn::Mul(sum, inverse_mass), hn::Set(d, 1.0));
-  const auto scale = hn::IfThenElseZero(moves, hn::Div(excess, by));
+  const auto scale = hn::IfThenElseZero(moves, hn::Mul(hn::Div(excess, by), hn::Set(d, packet.relaxation)));
   Store(Scaled(scale, direction), first, impulses);
   std::uint8_t missed[8];
-  hn::StoreMaskBits(d, hn::Not(reaches), missed);
+  hn::StoreMaskBits(d, hn::AndNot(reaches, off), missed);
   return static_cast<std::uint64_t>(*missed) << first;
 }
 
@@ -199,10 +201,10 @@ std::vector<LinkPacket> PackLinks(absl::Span<const Link> links, int first, bool 
   std::vector<LinkPacket> packets;
   for (size_t next = 0; next < links.size(); ++next) {
     const Link& link = links[next];
-    const bool same_group =
-        next > 0 && links[next - 1].a / kVertexBlock == link.a / kVertexBlock && packets.back().pairs == IsPair(link);
+    const bool same_group = next > 0 && packets.back().pairs == IsPair(link) && packets.back().sign == link.sign &&
+                            (!in_blocks || links[next - 1].a / kVertexBlock == link.a / kVertexBlock);
     if (!same_group || packets.back().count == kPacketLinks) {
-      packets.push_back({.first = first + static_cast<int>(next), .pairs = IsPair(link)});
+      packets.push_back({.first = first + static_cast<int>(next), .pairs = IsPair(link), .sign = link.sign});
     }
     LinkPacket& packet = packets.back();
     const int i = packet.count++;

@@ -23,6 +23,8 @@ struct alignas(64) LinkPacket {
   int count = 0;                                                      // used lanes; the others are padding
   int first = 0;                                                      // index of its first link
   bool pairs = false;                                                 // all links are pairs (IsPair)
+  int sign = 0;                                                       // of all its links (Link::sign)
+  double relaxation = 1;                                              // factor of its corrections
 };
 
 // One vector per link of a packet, such as its direction at the start of the step [m].
@@ -33,9 +35,9 @@ struct alignas(64) LinkVectors {
 // True if vertex b follows vertex a, so that their coordinates are contiguous.
 constexpr bool IsPair(const Link& link) { return link.b == link.a + 1; }
 
-// Packs the links in sequence, with indices from `first` on. The ends a of a packet's links lie in one block of
-// kVertexBlock vertices, and either all links are pairs or none is. With `in_blocks` (each link lies in one block)
-// offsets are relative to the block.
+// Packs the links in sequence, with indices from `first` on. The links of a packet have one sign, and either all are
+// pairs or none is. With `in_blocks` (each link lies in one block of kVertexBlock vertices) a packet's links lie in one
+// block, and offsets are relative to it.
 std::vector<LinkPacket> PackLinks(absl::Span<const Link> links, int first, bool in_blocks);
 
 // Sets `directions` to the vectors from a to b of the packets' links [m]. `x` points to the vertex of offset 0.
@@ -47,7 +49,8 @@ struct Restored {
 };
 
 // Restores the links of up to kPacketsTogether packets without common movable vertices: x [m] and v [m/s], from the
-// vertex of offset 0, change as by Restore over dt [s] along these directions. Links that have turned too far for their
+// vertex of offset 0, change as by Restore over dt [s] along these directions; limits that are not violated are left
+// unchanged. Links that have turned too far for their
 // direction are reported in `missed` and left unchanged. Thread-safe for packets without common vertices.
 Restored RestorePackets(absl::Span<const LinkPacket> packets, const LinkVectors* directions, double dt, double* x,
                         double* v);

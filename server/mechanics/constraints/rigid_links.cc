@@ -11,6 +11,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/constraints/link_pairing.h"
+#include "server/mechanics/constraints/swept_links.h"
 #include "server/mechanics/constraints/thesis_links.h"
 #include "server/mechanics/linalg/state_bounds.h"
 
@@ -89,8 +90,13 @@ absl::StatusOr<std::unique_ptr<Constraint>> RigidLinks::Make(const v1::RigidLink
   const auto count = static_cast<std::int64_t>(links->size());
   builder.model.report.set_rigid_links(builder.model.report.rigid_links() + count);
   if (scene.projection() == v1::PROJECTION_THESIS) {
+    if (scene.sweeps() > 0) return FieldError(absl::StrCat(field, ".sweeps"), "has no meaning with PROJECTION_THESIS");
     builder.ReportElement("constraint", name, count, "links", "correction split by displacement (thesis 2.10-2.11)");
     return std::make_unique<ThesisLinks>(name, *std::move(links));
+  }
+  if (scene.sweeps() > 0) {
+    std::erase_if(*links, [](const Link& link) { return !link.Movable(); });
+    return SweptLinks::Make(name, *links, scene.sweeps(), builder);
   }
   std::unique_ptr<RigidLinks> constraint(new RigidLinks(name, *links, builder.model));
   if (!constraint->network_.complete()) return TooTangled(path, links->size());

@@ -326,10 +326,22 @@ void Muscle::AdvanceScalars(const EvalContext& end, std::int64_t, double dt, Sca
   }
   if (!hill_.active()) return;
   const Tensions rates = std::visit([&](const auto& layout) { return MeanRatesIn(layout, end); }, layout_);
-  const double share = dt / (rate_time_ + dt);  // implicit: stable at any step
+  const double share = rate_time_ > 0 ? dt / (rate_time_ + dt) : 1;  // implicit: stable at any step
   for (int b = 0; b < FibreBundles::kCount; ++b) {
     double& rate = scalars.q[first_rate_ + b];
     rate += share * (rates[b] - rate);
+  }
+}
+
+void Muscle::SetScalarRates(const EvalContext& at, Eigen::VectorXd& rates) const {
+  for (int side = 0; side < 2 && first_activation_ >= 0; ++side) {
+    const int activation = first_activation_ + side;
+    rates[activation] = (DriveOf(at, side == 0) - at.scalars.q[activation]) / activation_time_;
+  }
+  if (!hill_.active() || rate_time_ == 0) return;
+  const Tensions means = std::visit([&](const auto& layout) { return MeanRatesIn(layout, at); }, layout_);
+  for (int b = 0; b < FibreBundles::kCount; ++b) {
+    rates[first_rate_ + b] = (means[b] - at.scalars.q[first_rate_ + b]) / rate_time_;
   }
 }
 

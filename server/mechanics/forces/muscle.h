@@ -51,6 +51,7 @@ class Muscle final : public Force {
                              Eigen::VectorXd& pushes) override;
 
   void AdvanceScalars(const EvalContext& end, std::int64_t tick, double dt, ScalarState& scalars) const override;
+  void SetScalarRates(const EvalContext& at, Eigen::VectorXd& rates) const override;
   bool advances_scalars() const override { return hill_.active() || activation_time_ > 0; }
 
   // Means over muscle by area at rest: of the stretch along fibres, and of the thickness over that at rest (1/(l m), as

@@ -29,6 +29,11 @@ constexpr double kCollapsed = 0.3;       // volume of a collapsed lung, of that 
 
 double WithSign(size_t side) { return side == 0 ? 1 : -1; }
 
+// Returns what the activation of the expiratory muscles tends to.
+double ExpiratoryDrive(const EvalContext& at) {
+  return at.parameters.apply_muscles() ? at.parameters.expiratory_activation() * at.expiration : 0;
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Force>> ThoraxPressures::Make(const v1::ThoraxPressures& scene, const std::string& given,
@@ -235,10 +240,12 @@ double ThoraxPressures::GasPressure(const EvalContext& at, const Sides& now) con
   return -elastance * (Volume(now) - at.scalars.q[first_scalar_ + 1]);
 }
 
+void ThoraxPressures::SetScalarRates(const EvalContext& at, Eigen::VectorXd& rates) const {
+  rates[expiration_] = (ExpiratoryDrive(at) - at.scalars.q[expiration_]) / kActivationTime;
+}
+
 void ThoraxPressures::AdvanceScalars(const EvalContext& end, std::int64_t, double dt, ScalarState& scalars) const {
-  const v1::Parameters& parameters = end.parameters;
-  const double drive = parameters.apply_muscles() ? parameters.expiratory_activation() * end.expiration : 0;
-  scalars.q[expiration_] += dt / (kActivationTime + dt) * (drive - scalars.q[expiration_]);
+  scalars.q[expiration_] += dt / (kActivationTime + dt) * (ExpiratoryDrive(end) - scalars.q[expiration_]);
   double &closed = scalars.q[first_scalar_], &volume = scalars.q[first_scalar_ + 1];
   if (end.parameters.airway_closed() && closed == 0) volume = Volume(SidesAt(end, SlopesAt(end)));
   closed = end.parameters.airway_closed() ? 1 : 0;

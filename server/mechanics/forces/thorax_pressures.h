@@ -49,6 +49,7 @@ class ThoraxPressures final : public Force {
   void AddSharedDamping(const EvalContext& at, OuterProducts& shared) const override;
   // Notes the volume of the lungs when their airway closes; the expiratory muscles follow their drive within 0.1 s.
   void AdvanceScalars(const EvalContext& end, std::int64_t tick, double dt, ScalarState& scalars) const override;
+  void SetScalarRates(const EvalContext& at, Eigen::VectorXd& rates) const override;
   bool advances_scalars() const override { return true; }
   double Energy(const EvalContext& at) const override;
   // Volume of both lungs, flow into them; pleural pressure, right and left; abdominal, transdiaphragmatic and alveolar

@@ -92,6 +92,10 @@ void StepPlan::AdvanceScalars(const v1::Parameters& parameters, double dt, const
   }
 }
 
+void StepPlan::SetScalarRates(const EvalContext& at, Eigen::VectorXd& rates) const {
+  for (const auto& force : model_.forces) force->SetScalarRates(at, rates);
+}
+
 void StepPlan::SumForces(const EvalContext& at, Points& f) const {
   const BlockContext context = WithSharedResults(at);
   const bool first = !SumWholeForces(context, f);

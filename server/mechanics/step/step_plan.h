@@ -58,6 +58,8 @@ class StepPlan {
   // Advances the scalars that forces advance (Force::AdvanceScalars) to the end of a step of `dt` [s], at which the
   // positions, velocities and poses of `state` are already, but not its time.
   void AdvanceScalars(const v1::Parameters& parameters, double dt, const Scratch& scratch, State& state) const;
+  // Sets the rates of the scalars that forces integrate (Force::SetScalarRates) at the moment of the state.
+  void SetScalarRates(const EvalContext& at, Eigen::VectorXd& rates) const;
   // Sets f to the sum of all forces and pulls, with those that motions transfer to coordinates, 3 x n [N].
   void SumForces(const EvalContext& at, Points& f) const;
   // Adds scale * shift (3 x n) to x, except for fixed and driven vertices.

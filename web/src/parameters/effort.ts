@@ -2,7 +2,7 @@ import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
 import type { Values } from "../state/undo_history";
 
 /** Activations of the deepest breath, preset "deep" of the scene `thorax`. */
-export const fullActivations = { diaphragm: 0.6, intercostal: 1.62 };
+export const fullActivations = { diaphragm: 0.45, intercostal: 1.76 };
 
 /** Breathing effort, as the student view shows it. */
 export interface Effort {
