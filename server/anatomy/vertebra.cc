@@ -76,20 +76,29 @@ double Distance(const Shape& s, Eigen::Vector3d x) {
   return SmoothMin(SmoothMin(BodyDistance(s, x), Arch(s, x), 4), SpinousProcess(s, x), 6);
 }
 
+// Returns the map from the local frame of Distance: the vertebra tilts with the curve of the spine.
+Eigen::Isometry3d FrameOf(int number) {
+  const double middle = BodyOfVertebra(number).Middle();
+  Eigen::Isometry3d frame(Eigen::AngleAxisd(-std::atan(SpineSlope(middle)), Eigen::Vector3d::UnitX()));
+  frame.translation() = Eigen::Vector3d(0, SpineFront(middle), middle);
+  return frame;
+}
+
 }  // namespace
+
+double VertebralBodyDistance(int number, const Eigen::Vector3d& x) {
+  return BodyDistance(ShapeOf(number), FrameOf(number).inverse() * x);
+}
 
 Mesh Vertebra(int number, double edge_length) {
   const Shape shape = ShapeOf(number);
-  const VertebralBody body = BodyOfVertebra(number);
   const Field field = [&](const Eigen::Vector3d& x) { return Distance(shape, x); };
   const double half = shape.transverse + 12, below = shape.height / 2 + 18 + shape.spine * std::sin(shape.slope);
   constexpr double kDetail = 3, kMaxEdge = 8;  // the arch is about 9 mm thick
   const Box box{{-half, -8, -below}, {half, shape.depth + 32 + shape.spine, shape.height / 2 + 18}};
   Mesh mesh = ImplicitSurface(field, box, std::min(edge_length, kMaxEdge), kDetail);
-  const double tilt = std::atan(SpineSlope(body.Middle()));
-  const Eigen::AngleAxisd turn(-tilt, Eigen::Vector3d::UnitX());
-  const Eigen::Vector3d front(0, SpineFront(body.Middle()), body.Middle());
-  mesh.vertices = (turn.toRotationMatrix() * mesh.vertices).colwise() + front;
+  const Eigen::Isometry3d frame = FrameOf(number);
+  mesh.vertices = (frame.linear() * mesh.vertices).colwise() + frame.translation();
   return mesh;
 }
 

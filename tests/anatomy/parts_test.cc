@@ -49,6 +49,10 @@ TEST(Parts, DefaultResolutionsSuitStreaming) {
   Eigen::Index bones = 0;
   for (const v1::Anatomy& part : Bones()) bones += MeshOf(part).vertices.cols();
   EXPECT_LT(bones, 60000);
+  Eigen::Index organs = 0;
+  for (const v1::Anatomy& part : Mediastinum()) organs += MeshOf(part).vertices.cols();
+  for (const v1::Anatomy& part : AbdominalOrgans()) organs += MeshOf(part).vertices.cols();
+  EXPECT_LT(organs, 20000);
   for (const v1::Side side : {v1::SIDE_LEFT, v1::SIDE_RIGHT}) {
     const Eigen::Index lung = MeshOf(Part(v1::STRUCTURE_LUNG, 0, side)).vertices.cols();
     EXPECT_GT(lung, 3000);
@@ -76,8 +80,9 @@ TEST(Parts, VerticesAreEstimatedWithoutGenerating) {
 }
 
 TEST(Parts, SameArgumentsGiveTheSameBits) {
-  for (const v1::Anatomy& part : {Part(v1::STRUCTURE_DIAPHRAGM), Part(v1::STRUCTURE_RIB, 3, v1::SIDE_LEFT),
-                                  Part(v1::STRUCTURE_VERTEBRA, 9), Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_LEFT)}) {
+  for (const v1::Anatomy& part :
+       {Part(v1::STRUCTURE_DIAPHRAGM), Part(v1::STRUCTURE_RIB, 3, v1::SIDE_LEFT), Part(v1::STRUCTURE_VERTEBRA, 9),
+        Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_LEFT), Part(v1::STRUCTURE_LIVER)}) {
     const auto first = Generate(part, 6), second = Generate(part, 6);
     ASSERT_TRUE(first.ok() && second.ok());
     EXPECT_EQ(first->vertices, second->vertices);
@@ -102,6 +107,8 @@ TEST(Parts, UnknownPartsAreRejectedByField) {
   ExpectRejected(Part(v1::STRUCTURE_COSTAL_CARTILAGE, 2), 0, "anatomy.side");
   ExpectRejected(Part(v1::STRUCTURE_VERTEBRA, 16), 0, "anatomy.number");
   ExpectRejected(Part(v1::STRUCTURE_LUNG), 0, "anatomy.side");
+  ExpectRejected(Part(v1::STRUCTURE_DISC, 15), 0, "anatomy.number");
+  ExpectRejected(Part(v1::STRUCTURE_VENA_CAVA), 0, "anatomy.number");
 }
 
 TEST(Parts, ResolutionOutOfRangeIsRejected) {

@@ -1,0 +1,116 @@
+#include "server/mechanics/skinning/smooth_weights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace phrenic {
+namespace {
+
+constexpr double kSmoothing = 5e-3;              // n [m]
+constexpr double kUpright = 0.35;                // factor of vertical distances
+constexpr double kReach = 6;                     // (R^2 + n^2) / (d_min^2 + n^2)
+constexpr size_t kMostCarriers = 6000;           // bounds the time to order them, which grows with the square
+constexpr double kSmallestShare = 0.01;          // relative to the largest; smaller shares are dropped
+constexpr double kFew = 1. / 5, kMany = 1. / 3;  // of R: vertices less than the first apart are not used
+
+double Softened(double squared) { return squared + kSmoothing * kSmoothing; }
+
+Eigen::Vector3d Scaled(const Eigen::Vector3d& point) { return {point.x(), point.y(), kUpright * point.z()}; }
+
+// Returns the weight of one driver among several at a distance of `squared` [m^2].
+double ShareAt(double squared) { return 1 / (Softened(squared) * Softened(squared)); }
+
+double Smoothstep(double t) {
+  t = std::clamp(t, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+std::vector<int> Those(const ModelBuilder& builder, const std::vector<int>& bodies, bool deformable) {
+  std::vector<int> chosen;
+  std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(chosen),
+               [&](int b) { return (builder.model.bodies[b].first_vertex >= 0) == deformable; });
+  return chosen;
+}
+
+}  // namespace
+
+SmoothWeights::SmoothWeights(const ModelBuilder& builder, const std::vector<int>& drivers)
+    : carriers_(FarthestFirst(builder, Those(builder, drivers, true))),
+      others_(builder, Those(builder, drivers, false)) {}
+
+std::vector<SmoothWeights::Carrier> SmoothWeights::FarthestFirst(const ModelBuilder& builder,
+                                                                 const std::vector<int>& bodies) {
+  std::vector<Carrier> order;
+  for (const int b : bodies) {
+    const BodyModel& body = builder.model.bodies[b];
+    for (Eigen::Index i = 0; i < body.mesh.vertices.cols(); ++i) {
+      order.push_back({Scaled(body.mesh.vertices.col(i)), std::numeric_limits<double>::infinity(),
+                       body.first_vertex + static_cast<int>(i)});
+    }
+  }
+  const size_t used = std::min(order.size(), kMostCarriers);
+  for (size_t next = 1; next < used && !builder.stop.Stopped(); ++next) {
+    size_t farthest = next;
+    for (size_t i = next; i < order.size(); ++i) {
+      order[i].apart = std::min(order[i].apart, (order[i].at - order[next - 1].at).norm());
+      if (order[i].apart > order[farthest].apart) farthest = i;
+    }
+    std::swap(order[next], order[farthest]);
+  }
+  order.resize(used);
+  return order;
+}
+
+// Returns d_min^2 [m^2]; infinity without deformable drivers.
+double SmoothWeights::Smallest(const Eigen::Vector3d& scaled) const {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Carrier& carrier : carriers_) smallest = std::min(smallest, (carrier.at - scaled).squaredNorm());
+  return smallest;
+}
+
+std::vector<SmoothWeights::Share> SmoothWeights::Shares(const Eigen::Vector3d& point, double smallest) const {
+  std::vector<Share> shares;
+  if (!carriers_.empty()) shares.push_back({-1, -1, ShareAt(smallest)});
+  for (int driver = 0; driver < others_.count(); ++driver) {
+    const Neighbour nearest = others_.search(driver).Nearest(point);
+    shares.push_back({driver, nearest.vertex, ShareAt(nearest.distance * nearest.distance)});
+  }
+  double largest = 0, sum = 0;
+  for (const Share& share : shares) largest = std::max(largest, share.weight);
+  for (Share& share : shares) sum += share.weight = std::max(0.0, share.weight - kSmallestShare * largest);
+  for (Share& share : shares) share.weight /= sum;
+  return shares;
+}
+
+void SmoothWeights::AppendCarriers(const Eigen::Vector3d& scaled, double smallest, double share, int for_vertex,
+                                   std::vector<SkinWeight>& weights) const {
+  const double at_reach = kReach * Softened(smallest), reach = std::sqrt(at_reach - kSmoothing * kSmoothing);
+  const size_t first = weights.size();
+  double sum = 0;
+  for (const Carrier& carrier : carriers_) {
+    if (carrier.apart <= kFew * reach) break;
+    const double at = Softened((carrier.at - scaled).squaredNorm());
+    if (at >= at_reach) continue;
+    const double peak = 1 / at - 1 / at_reach;
+    const double weight = peak * peak * Smoothstep((carrier.apart / reach - kFew) / (kMany - kFew));
+    weights.push_back({for_vertex, -1, carrier.simulated_vertex, weight});
+    sum += weight;
+  }
+  for (size_t i = first; i < weights.size(); ++i) weights[i].weight *= share / sum;
+}
+
+void SmoothWeights::Append(const Eigen::Vector3d& point, int for_vertex, std::vector<SkinWeight>& weights) const {
+  const Eigen::Vector3d scaled = Scaled(point);
+  const double smallest = Smallest(scaled);
+  for (const Share& share : Shares(point, smallest)) {
+    if (share.weight == 0) continue;
+    if (share.driver < 0) {
+      AppendCarriers(scaled, smallest, share.weight, for_vertex, weights);
+    } else {
+      others_.AppendWeights({share.driver, share.vertex, 0}, for_vertex, share.weight, weights);
+    }
+  }
+}
+
+}  // namespace phrenic
