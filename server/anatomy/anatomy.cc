@@ -37,16 +37,21 @@ double DefaultResolution(v1::Structure structure, v1::Sheet sheet) {
     case v1::STRUCTURE_VERTEBRA:
       return 3.4;
     case v1::STRUCTURE_DISC:
-      return 3;
-    case v1::STRUCTURE_HEART:
-      return 4.5;
+    case v1::STRUCTURE_MANUBRIUM:
+    case v1::STRUCTURE_STERNUM_BODY:
+      return 3.4;
+    case v1::STRUCTURE_XIPHOID:
+      return 2.4;
     case v1::STRUCTURE_AORTA:
     case v1::STRUCTURE_VENA_CAVA:
-    case v1::STRUCTURE_STOMACH:
     case v1::STRUCTURE_SPLEEN:
       return 5;
-    case v1::STRUCTURE_LIVER:
+    case v1::STRUCTURE_HEART:
+      return 5.5;
+    case v1::STRUCTURE_STOMACH:
       return 6;
+    case v1::STRUCTURE_LIVER:
+      return 7.5;
     default:
       return 4.1;
   }

@@ -22,13 +22,13 @@ struct MedialEnd {
 
 MedialEnd MedialEndOf(int number) {
   if (number == 1) return {6.2, 3.8};
-  return number <= kTrueRibs ? MedialEnd{5.2, 4.0} : MedialEnd{4.0, 2.6};
+  return number <= kTrueRibs ? MedialEnd{5.2, 4.0} : MedialEnd{4.2, 2.4};
 }
 
 // Where cartilages 1 to 7 meet the sternum.
 Eigen::Vector3d SternalEnd(int number) {
   const double z = SternalNotch(number);
-  return {SternumHalfWidth(z) + 1, SternumLine(z) + 1, z};
+  return {SternumHalfWidth(z) + 1.5, SternumLine(z) + 1, z};
 }
 
 double AzimuthOf(const Eigen::Vector3d& point) {
@@ -83,9 +83,9 @@ Curve FalsePath(int number, Curve path, const PathEnd& from) {
     const Eigen::Vector3d along = (above[at + 1] - above[at - 1]).normalized();
     return Eigen::Vector3d(above[at] + below * OutOfCage(above[at]).cross(along).normalized());
   };
-  const Eigen::Vector3d join = beside(0, 9), next = beside(9, 7.2), rise = beside(4.5, 9) - beside(-4.5, 9);
+  const Eigen::Vector3d join = beside(0, 9), next = beside(9, 6.8), rise = beside(4.5, 9) - beside(-4.5, 9);
   AppendBetween(from, {join, rise.z() / rise.head<2>().norm()}, false, path);
-  path.insert(path.end(), {join, next, beside(18, 4.8), beside(26, 2.5)});
+  path.insert(path.end(), {join, next, beside(18, 3.5), beside(27, 0.2)});
   return path;
 }
 
@@ -104,7 +104,8 @@ Mesh LeftCartilage(int number, double edge_length) {
   const MedialEnd end = MedialEndOf(number);
   const auto section = [&](double s, const Eigen::Vector3d& centre) {
     TubeSection at = rib.section;
-    const double t = Smooth(1.1 * s - 0.1), keep = 1 - Smooth(s / 0.6);
+    const double t = Smooth(1.1 * s - 0.1);
+    const double keep = 1 - (number == 1 ? 0.6 : 1) * Smooth(s / 0.6);  // the first one stays oblique
     at.half_broad += t * (end.broad - at.half_broad);
     at.half_thin += t * (end.thin - at.half_thin);
     at.thin = keep * rib.section.thin.normalized() + (1 - keep) * OutOfCage(centre);

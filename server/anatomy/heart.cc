@@ -20,25 +20,28 @@ double LeftVentricle(const Eigen::Vector3d& x) {
 
 double Chambers(const Eigen::Vector3d& x) {
   const double right_ventricle = Ellipsoid(x, {2, -44, 238}, {36, 28, 38});
-  const double right_atrium = Ellipsoid(x, {-20, -16, 248}, {22, 26, 32});
+  const double right_atrium = Ellipsoid(x, {-20, -14, 244}, {22, 26, 35});
   const double left_atrium = Ellipsoid(x, {0, 2, 262}, {30, 17, 20});
   return SmoothMin(SmoothMin(LeftVentricle(x), right_ventricle, 9), SmoothMin(right_atrium, left_atrium, 9), 9);
 }
 
 double PulmonaryTrunk(const Eigen::Vector3d& x) {
-  const Eigen::Vector3d root(10, -50, 258), fork(13, -26, 296);
-  const double branches = SmoothMin(Capsule(x, fork, {36, 2, 291}, 9, 7.5), Capsule(x, fork, {-36, 6, 284}, 9, 7.5), 4);
+  const Eigen::Vector3d root(10, -50, 258), fork(13, -26, 301);
+  const double branches = SmoothMin(Capsule(x, fork, {36, 2, 301}, 9, 7.5), Capsule(x, fork, {-36, 6, 295}, 9, 7.5), 4);
   return SmoothMin(Capsule(x, root, fork, 12, 11), branches, 5);
 }
 
 }  // namespace
 
 Mesh Heart(double edge_length) {
-  constexpr double kAboveSheet = 3.5, kMaxEdge = 9, kDetail = 4;
+  constexpr double kAboveSheet = 3.5, kMaxEdge = 9, kDetail = 4, kFar = 8;
   const Field field = [](const Eigen::Vector3d& x) {
-    return SmoothMin(SmoothMax(Chambers(x), BetweenLungs(x, kAboveSheet), 8), PulmonaryTrunk(x), 7);
+    const double trunk = PulmonaryTrunk(x);
+    double chambers = Chambers(x);
+    if (chambers < kFar) chambers = SmoothMax(chambers, BetweenLungs(x, kAboveSheet), 8);  // saves time elsewhere
+    return SmoothMin(chambers, trunk, 7);
   };
-  return ImplicitSurface(field, {{-60, -95, 185}, {75, 35, 315}}, std::min(edge_length, kMaxEdge), kDetail);
+  return ImplicitSurface(field, {{-60, -95, 185}, {75, 35, 318}}, std::min(edge_length, kMaxEdge), kDetail);
 }
 
 }  // namespace phrenic::anatomy

@@ -11,7 +11,7 @@
 namespace phrenic::anatomy {
 namespace {
 
-constexpr double kRadius = 105;  // of the cage; turns disc coordinates into lengths [mm]
+constexpr double kCageRadius = 105;  // turns disc coordinates into lengths [mm]
 
 }  // namespace
 
@@ -22,13 +22,14 @@ double WithinCage(const Eigen::Vector3d& x, double inset) {
 }
 
 double AboveDome(const Eigen::Vector3d& x) {
-  constexpr double kStep = 0.01;
-  const double z = std::clamp(x.z(), 100.0, 230.0);
-  const Eigen::Vector2d q = CageSection(z, kDiaphragmInset).DiscCoordinates(x.head<2>());
-  const double r = std::clamp(q.norm(), kStep, 1 - 2 * kStep);
+  constexpr double kStep = 0.01, kHighest = 228, kLowest = 95;  // of the domes, with the fold where they end [mm]
+  if (x.z() > kHighest + 10 || x.z() < kLowest - 10) return x.z() - (x.z() > kHighest ? kHighest : kLowest);
+  const Eigen::Vector2d q = CageSection(x.z(), kDiaphragmInset).DiscCoordinates(x.head<2>());
+  const double r = std::clamp(q.norm(), 2 * kStep, 1 - kStep);
   const Eigen::Vector2d unit = q / std::max(q.norm(), 1e-9);
-  const double slope = (DomeHeight((r - kStep) * unit) - DomeHeight((r + kStep) * unit)) / (2 * kStep * kRadius);
-  return (x.z() - DomeHeight(q)) / std::hypot(1.0, slope);
+  const double height = DomeHeight(r * unit);
+  const double slope = (DomeHeight((r - kStep) * unit) - height) / (kStep * kCageRadius);
+  return (x.z() - height) / std::hypot(1.0, slope);
 }
 
 double BelowDiaphragm(const Eigen::Vector3d& x, double gap) {
@@ -38,7 +39,7 @@ double BelowDiaphragm(const Eigen::Vector3d& x, double gap) {
 
 double BetweenLungs(const Eigen::Vector3d& x, double gap) {
   constexpr double kBlend = 6, kPleurae = 1.2;
-  const double lungs = kPleurae - std::min(LungField(x, false), LungField(x, true));
+  const double lungs = kPleurae - LungField(x, x.x() > 0);  // neither lung crosses the midsagittal plane
   return SmoothMax(SmoothMax(lungs, gap - AboveDome(x), kBlend), WithinCage(x, kDiaphragmInset - 1), kBlend);
 }
 

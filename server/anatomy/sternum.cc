@@ -14,7 +14,7 @@ constexpr double kAngle = 317;    // sternal angle, where manubrium and body mee
 constexpr double kBodyEnd = 214;  // z where the xiphoid begins [mm]
 constexpr double kNotch = 358;    // z of the jugular notch [mm]
 constexpr double kXiphoidTip = 184;
-constexpr double kJoint = 0.9;  // width of the synchondroses between the three parts [mm]
+constexpr double kOverlap = 2;  // of the xiphoid with the body, so that no gap is seen [mm]
 constexpr int kCostalNotches = 7;
 constexpr double kRounded = 5;  // blending width at the edges [mm]
 
@@ -36,7 +36,7 @@ double BetweenBorders(const Eigen::Vector3d& x) {
 
 // Outside of the costal notches, in which the cartilages end.
 double OutsideCostalNotches(const Eigen::Vector3d& x) {
-  constexpr double kRadius = 5.4, kOutside = 2.2;
+  constexpr double kRadius = 5.6, kOutside = 3.2;
   double outside = -2 * kRadius;
   for (int number = 1; number <= kCostalNotches; ++number) {
     const double z = SternalNotch(number);
@@ -54,7 +54,7 @@ double BelowUpperBorder(const Eigen::Vector3d& x) {
 }
 
 Mesh Plate(const Field& half, double bottom, double top, double edge_length) {
-  constexpr double kDetail = 2.6, kMargin = 5;
+  constexpr double kDetail = 2.2, kMargin = 5;
   const Field field = [&half](const Eigen::Vector3d& x) { return half({std::abs(x.x()), x.y(), x.z()}); };
   const auto [front, back] = std::minmax({SternumLine(bottom), SternumLine(top), SternumLine((bottom + top) / 2)});
   const Box box{{-38, front - 15, bottom - kMargin}, {38, back + 15, top + kMargin}};
@@ -80,37 +80,37 @@ double SternumHalfWidth(double z) {
     return 10 + 3 * Smooth(up / 0.1) + 40 * up * (1 - up) * (1 - up) + 0.5 * up;
   }
   const double down = std::min(1.0, (kBodyEnd - z) / (kBodyEnd - kXiphoidTip));
-  return 9.5 - 6.5 * Smooth(down);
+  return 9.8 - 6.8 * std::pow(down, 1.7);
 }
 
 double SternalNotch(int number) { return 342 - 25.5 * (number - 1) + 0.85 * (number - 1) * (number - 1); }
 
 Mesh Manubrium(double edge_length) {
-  constexpr double kMaxEdge = 7, kBottom = kAngle + kJoint / 2;
+  constexpr double kMaxEdge = 7, kBottom = kAngle;
   const Field half = [](const Eigen::Vector3d& x) {
     const double outline = SmoothMax(BelowUpperBorder(x), SmoothMax(BetweenBorders(x), OutsideCostalNotches(x), 2), 4);
-    return SmoothMax(SmoothMax(outline, kBottom - x.z(), 1.5), BetweenFaces(x, 5.8), kRounded);
+    return SmoothMax(SmoothMax(outline, kBottom - x.z(), 0.8), BetweenFaces(x, 5.8), kRounded);
   };
   return Plate(half, kBottom, kNotch + 5, std::min(edge_length, kMaxEdge));
 }
 
 Mesh SternumBody(double edge_length) {
-  constexpr double kMaxEdge = 7, kBottom = kBodyEnd + kJoint / 2, kTop = kAngle - kJoint / 2;
+  constexpr double kMaxEdge = 7, kBottom = kBodyEnd, kTop = kAngle;
   const Field half = [](const Eigen::Vector3d& x) {
     const double outline = SmoothMax(BetweenBorders(x), OutsideCostalNotches(x), 2);
     const double ends = std::max(kBottom - x.z(), x.z() - kTop);
-    return SmoothMax(SmoothMax(outline, ends, 1.5), BetweenFaces(x, BodyHalfThickness(x.z())), kRounded);
+    return SmoothMax(SmoothMax(outline, ends, 0.8), BetweenFaces(x, BodyHalfThickness(x.z())), kRounded);
   };
   return Plate(half, kBottom, kTop, std::min(edge_length, kMaxEdge));
 }
 
 Mesh Xiphoid(double edge_length) {
-  constexpr double kMaxEdge = 5, kTop = kBodyEnd - kJoint / 2;
+  constexpr double kMaxEdge = 5, kTop = kBodyEnd + kOverlap;
   const Field half = [](const Eigen::Vector3d& x) {
     const double down = std::clamp((kTop - x.z()) / (kTop - kXiphoidTip), 0.0, 1.0);
     const double tip = std::hypot(x.x(), std::max(0.0, kXiphoidTip + 3 - x.z())) - 3.2;  // rounds the lower end
     const double outline = x.z() < kXiphoidTip + 3 ? tip : BetweenBorders(x);
-    return SmoothMax(SmoothMax(outline, x.z() - kTop, 1.5), BetweenFaces(x, 3.6 - 1.8 * down), 3.5);
+    return SmoothMax(SmoothMax(outline, x.z() - kTop, 0.8), BetweenFaces(x, 3.6 - 1.8 * down), 3.5);
   };
   return Plate(half, kXiphoidTip, kTop, std::min(edge_length, kMaxEdge));
 }

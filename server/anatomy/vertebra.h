@@ -2,8 +2,7 @@
 #ifndef PHRENIC_SERVER_ANATOMY_VERTEBRA_H_
 #define PHRENIC_SERVER_ANATOMY_VERTEBRA_H_
 
-#include <Eigen/Core>
-
+#include "server/anatomy/field.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic::anatomy {
@@ -13,8 +12,8 @@ namespace phrenic::anatomy {
 // transverse processes point backwards in the thorax and sideways in the lumbar spine.
 Mesh Vertebra(int number, double edge_length);
 
-// Returns the approximate signed distance to the body of vertebra 1 to 15 [mm], negative inside.
-double VertebralBodyDistance(int number, const Eigen::Vector3d& x);
+// Returns the body of vertebra 1 to 15 at its position, without its arch and processes.
+Field VertebralBodyField(int number);
 
 }  // namespace phrenic::anatomy
 

@@ -21,15 +21,10 @@ Station BeforeSpine(double x, double z, double radius, double distance = 1.2) {
   return {{x, SpineFront(z) - radius - distance, z}, radius};
 }
 
-// Where a vessel passes the sheet: the middle of an opening and the sheet's normal there, towards the thorax.
-struct Passage {
-  Eigen::Vector3d middle, normal;
-};
-
-Passage PassageOf(const PlaneLoop& opening) {
+// Returns the point where a vessel passes the sheet: the middle of an opening.
+Eigen::Vector3d PassageOf(const PlaneLoop& opening) {
   const Eigen::Vector2d sum = std::accumulate(opening.begin(), opening.end(), Eigen::Vector2d(0, 0));
-  const Eigen::Vector2d middle = sum / static_cast<double>(opening.size());
-  return {DiaphragmPoint(middle), DiaphragmNormal(middle)};
+  return DiaphragmPoint(sum / static_cast<double>(opening.size()));
 }
 
 // Returns the radius at the relative arc length s, linear between the stations.
@@ -55,22 +50,20 @@ Mesh Vessel(const std::vector<Station>& stations, double edge_length) {
   return Tube({.through = path, .section = section}, edge_length);
 }
 
-constexpr double kThroughSheet = 12;  // length over which a vessel follows the sheet's normal on either side [mm]
-
+// The gullet comes down between sheet and spine and turns forwards through its hiatus.
 std::vector<Station> OesophagusStations() {
-  const Passage hiatus = PassageOf(OesophagealOpening());
-  const Eigen::Vector3d below = hiatus.middle - kThroughSheet * hiatus.normal;
+  const Eigen::Vector3d hiatus = PassageOf(OesophagealOpening());
   return {BeforeSpine(0, 390, 6, 0.5),
           BeforeSpine(0, 355, 6, 0.5),
           BeforeSpine(-2, 325, 6, 0.5),
           BeforeSpine(-4, 295, 6, 0.5),
           BeforeSpine(-6, 262, 6, 2),
-          BeforeSpine(-3, 235, 6, 12),
-          BeforeSpine(3, 212, 6, 17),
-          {hiatus.middle + kThroughSheet * hiatus.normal, 5.5},
-          {hiatus.middle, 5.5},
-          {below, 6},
-          {below + Eigen::Vector3d(12, -6, -8), 7}};
+          BeforeSpine(-2, 238, 6, 14),
+          BeforeSpine(5, 216, 6, 15),
+          {hiatus + Eigen::Vector3d(0, 4, 24), 5.2},
+          {hiatus + Eigen::Vector3d(0, 0, 1), 5},
+          {hiatus + Eigen::Vector3d(3, -10, -6), 5.5},
+          {hiatus + Eigen::Vector3d(14, -18, -12), 7}};
 }
 
 }  // namespace
@@ -85,9 +78,9 @@ Mesh Aorta(double edge_length) {
                  BeforeSpine(13, 288, 11),
                  BeforeSpine(12, 255, 10.5),
                  BeforeSpine(9, 220, 10),
-                 BeforeSpine(2, 192, 9),
-                 BeforeSpine(-3, 166, 8.5),
-                 BeforeSpine(-1, 140, 8),
+                 BeforeSpine(0, 192, 9),
+                 BeforeSpine(-4, 166, 8.5),
+                 BeforeSpine(-2, 140, 8),
                  BeforeSpine(0, 110, 7.5),
                  BeforeSpine(0, 60, 7.5),
                  BeforeSpine(0, 5, 7.5)},
@@ -100,12 +93,12 @@ Mesh SuperiorVenaCava(double edge_length) {
 }
 
 Mesh InferiorVenaCava(double edge_length) {
-  const Passage opening = PassageOf(CavalOpening());
-  return Vessel({{{-24, -8, 246}, 9.5},
-                 {opening.middle + kThroughSheet * opening.normal, 9.5},
-                 {opening.middle, 9.5},
-                 {opening.middle - kThroughSheet * opening.normal, 9.5},
-                 BeforeSpine(-28, 165, 9.5, 9),
+  const Eigen::Vector3d opening = PassageOf(CavalOpening());
+  return Vessel({{{-23, -2, 260}, 9.5},
+                 {opening + Eigen::Vector3d(6, 1, 18), 9.5},
+                 {opening, 9.5},
+                 {opening + Eigen::Vector3d(-3, -1, -18), 9.5},
+                 BeforeSpine(-30, 165, 9.5, 9),
                  BeforeSpine(-22, 120, 9.5, 7),
                  BeforeSpine(-19, 60, 9.5, 7),
                  BeforeSpine(-19, 5, 9.5, 7)},

@@ -1,9 +1,8 @@
 // The tubes that pass the diaphragm: aorta, venae cavae and oesophagus. Displayed, not simulated.
 //
-// The inferior vena cava and the oesophagus pass through the middle of their openings along the sheet's normal. The
-// aorta runs in front of the vertebral bodies and between the crura; the generated sheet is 4 mm in front of the bodies
-// there, so that above the median arcuate ligament, up to about z = 185 mm, the aorta lies in the sheet instead of
-// behind it.
+// The inferior vena cava and the oesophagus pass through the middle of their openings. The aorta runs in front of the
+// vertebral bodies and between the crura; the generated sheet is 4 mm in front of the bodies there, so that above the
+// median arcuate ligament, up to about z = 185 mm, the aorta lies in the sheet instead of behind it.
 #ifndef PHRENIC_SERVER_ANATOMY_VESSELS_H_
 #define PHRENIC_SERVER_ANATOMY_VESSELS_H_
 
