@@ -53,7 +53,7 @@ double LiverField(const Eigen::Vector3d& x) {
 double SpleenField(const Eigen::Vector3d& x) {
   static const Eigen::AngleAxisd along_rib(-0.5, Eigen::Vector3d::UnitX());
   const Eigen::Vector3d centre(86, 44, 138);
-  const double shape = Ellipsoid(along_rib * (x - centre), Eigen::Vector3d::Zero(), {24, 46, 31});
+  const double shape = Ellipsoid(along_rib * (x - centre), Eigen::Vector3d::Zero(), {28, 49, 35});
   return UnderSheet(BesideStomach(shape, x), x);
 }
 

@@ -198,11 +198,11 @@ double Area(v1::Structure structure, v1::Sheet sheet) {
     case v1::STRUCTURE_VERTEBRA:
       return 12'000;
     case v1::STRUCTURE_COSTAL_CARTILAGE:
-      return 4'000;
+      return 5'000;
     case v1::STRUCTURE_XIPHOID:
       return 2'000;
     case v1::STRUCTURE_DISC:
-      return 4'000;
+      return 5'000;
     case v1::STRUCTURE_HEART:
     case v1::STRUCTURE_STOMACH:
       return 50'000;

@@ -15,11 +15,11 @@ namespace {
 double LeftVentricle(const Eigen::Vector3d& x) {
   static const Eigen::Quaterniond upright =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d(0.72, -0.45, -0.53), Eigen::Vector3d::UnitX());
-  return Ellipsoid(upright * (x - Eigen::Vector3d(18, -36, 238)), Eigen::Vector3d::Zero(), {55, 37, 36});
+  return Ellipsoid(upright * (x - Eigen::Vector3d(18, -36, 238)), Eigen::Vector3d::Zero(), {59, 41, 41});
 }
 
 double Chambers(const Eigen::Vector3d& x) {
-  const double right_ventricle = Ellipsoid(x, {2, -44, 238}, {36, 28, 38});
+  const double right_ventricle = Ellipsoid(x, {2, -44, 238}, {38, 31, 41});
   const double right_atrium = Ellipsoid(x, {-20, -14, 244}, {22, 26, 35});
   const double left_atrium = Ellipsoid(x, {0, 2, 262}, {30, 17, 20});
   return SmoothMin(SmoothMin(LeftVentricle(x), right_ventricle, 9), SmoothMin(right_atrium, left_atrium, 9), 9);

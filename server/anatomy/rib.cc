@@ -71,11 +71,25 @@ struct RibGirths {
 };
 
 RibGirths GirthsOf(int number) {
-  if (number == 1) return {{4.6, 4.2}, {3.6, 3.2}, {8.4, 2.7}, {8.6, 3.2}};
+  if (number == 1) return {{4.6, 4.2}, {3.6, 3.2}, {8.1, 2.7}, {8.3, 3.2}};
   if (number == 2) return {{5.0, 4.6}, {4.0, 3.3}, {6.4, 2.8}, {6.8, 3.3}};
   if (number == 11) return {{5.0, 4.6}, {4.2, 3.5}, {5.8, 2.9}, {3.0, 2.0}};
   if (number == 12) return {{4.6, 4.2}, {4.0, 3.2}, {4.6, 2.6}, {2.4, 1.7}};
   return {{5.6, 5.0}, {4.4, 3.5}, {6.2, 3.1}, {6.8, 3.5}};
+}
+
+// Returns the centreline, with the bends at the tubercle made round: a tube cannot follow one that is sharper than it
+// is thick. Beyond 60 mm from the head it is the smooth curve through the control points.
+Curve RoundedPath(const Curve& through) {
+  constexpr double kStep = 3, kRounded = 60;  // [mm]
+  constexpr int kPasses = 8;
+  Curve curve = SmoothCurve(through, 2 + static_cast<int>(Length(through) / kStep));
+  const auto last = std::min(curve.size() - 1, static_cast<size_t>(kRounded / kStep));
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const Curve before = curve;
+    for (size_t i = 1; i < last; ++i) curve[i] = (before[i - 1] + 2 * before[i] + before[i + 1]) / 4;
+  }
+  return curve;
 }
 
 // A rib's length and how far its tubercle is from its head, along it [mm].
@@ -83,9 +97,8 @@ struct RibMeasures {
   double length, tubercle;
 };
 
-RibMeasures MeasuresOf(const Curve& path) {
-  constexpr int kSamples = 400;
-  return {Length(SmoothCurve(path, kSamples)), Length({path[0], path[1], path[2]})};
+RibMeasures MeasuresOf(const Curve& through, const Curve& path) {
+  return {Length(path), Length({through[0], through[1], through[2]})};
 }
 
 // Returns the direction of the thin axis: at the neck horizontal, further on the normal of the cage, so that the shaft
@@ -134,8 +147,8 @@ Curve LeftRibPath(int number) {
 }
 
 Mesh LeftRib(int number, double edge_length) {
-  const Curve path = LeftRibPath(number);
-  const RibMeasures measures = MeasuresOf(path);
+  const Curve through = LeftRibPath(number), path = RoundedPath(through);
+  const RibMeasures measures = MeasuresOf(through, path);
   const auto section = [&](double s, const Eigen::Vector3d& centre) { return Section(number, measures, s, centre); };
   const TubeSection end = section(1, path.back());
   return Tube({.through = path,
@@ -146,11 +159,11 @@ Mesh LeftRib(int number, double edge_length) {
 }
 
 RibEnd LeftRibEnd(int number) {
-  const Curve path = LeftRibPath(number);
+  const Curve through = LeftRibPath(number), path = RoundedPath(through);
   constexpr int kSamples = 2000;
   const Curve fine = SmoothCurve(path, kSamples);
   const Eigen::Vector3d along = (fine[kSamples - 1] - fine[kSamples - 2]).normalized();
-  return {path.back(), along, Section(number, MeasuresOf(path), 1, path.back())};
+  return {path.back(), along, Section(number, MeasuresOf(through, path), 1, path.back())};
 }
 
 }  // namespace phrenic::anatomy

@@ -194,7 +194,9 @@ Curve SmoothCurve(const Curve& through, int count) {
 
 Mesh Tube(const TubeShape& shape, double edge_length) {
   const double length = Length(Dense(shape.through));
-  const int spans = std::max(3, static_cast<int>(std::lround(length / (1.3 * edge_length))));
+  constexpr double kFarthest = 12;  // between rings [mm]; more gives slivers where a ring has many vertices
+  const double step = std::min(1.3 * edge_length, kFarthest);
+  const int spans = std::max(3, static_cast<int>(std::lround(length / step)));
   const Curve curve = SmoothCurve(shape.through, kFine * spans + 1);
   const int around = VerticesAround(shape, curve, edge_length);
   const std::vector<Profile> rings = Rings(shape, curve);

@@ -60,10 +60,11 @@ std::vector<Station> OesophagusStations() {
           BeforeSpine(-6, 262, 6, 2),
           BeforeSpine(-2, 238, 6, 14),
           BeforeSpine(5, 216, 6, 15),
-          {hiatus + Eigen::Vector3d(0, 4, 24), 5.2},
-          {hiatus + Eigen::Vector3d(0, 0, 1), 5},
-          {hiatus + Eigen::Vector3d(3, -10, -6), 5.5},
-          {hiatus + Eigen::Vector3d(14, -18, -12), 7}};
+          {hiatus + Eigen::Vector3d(0, 6.5, 24), 4.8},
+          {hiatus + Eigen::Vector3d(0, 5.9, 12), 4.4},
+          {hiatus + Eigen::Vector3d(0, 1, -2), 4.4},
+          {hiatus + Eigen::Vector3d(2, -9, -8), 5},
+          {hiatus + Eigen::Vector3d(14, -17, -13), 7}};
 }
 
 }  // namespace
@@ -80,8 +81,8 @@ Mesh Aorta(double edge_length) {
                  BeforeSpine(9, 220, 10),
                  BeforeSpine(0, 192, 9),
                  BeforeSpine(-4, 166, 8.5),
-                 BeforeSpine(-2, 140, 8),
-                 BeforeSpine(0, 110, 7.5),
+                 BeforeSpine(-2, 140, 7.5),
+                 BeforeSpine(0, 110, 6.8),
                  BeforeSpine(0, 60, 7.5),
                  BeforeSpine(0, 5, 7.5)},
                 edge_length);
