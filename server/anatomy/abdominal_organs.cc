@@ -11,8 +11,9 @@
 namespace phrenic::anatomy {
 namespace {
 
-constexpr double kBelowSheet = 4.5, kApart = 2, kMaxEdge = 10, kDetail = 5;  // [mm]
-constexpr double kFar = 8;  // beyond this distance from one of the shapes that an organ is cut from, no other counts
+constexpr double kBelowSheet = 4.5, kFromStomach = 2, kCoarsestOrgan = 10, kOrganDetail = 5;  // [mm]
+constexpr double kOrganFar =
+    8;  // beyond this distance from one of the shapes that an organ is cut from, no other counts
 
 double SoftPlus(double t) { return std::log1p(std::exp(t)); }
 
@@ -30,12 +31,12 @@ double StomachShape(const Eigen::Vector3d& x) {
 
 // Returns what is left of a shape below the diaphragm.
 double UnderSheet(double shape, const Eigen::Vector3d& x) {
-  return shape > kFar ? shape : SmoothMax(shape, BelowDiaphragm(x, kBelowSheet), 8);
+  return shape > kOrganFar ? shape : SmoothMax(shape, BelowDiaphragm(x, kBelowSheet), 8);
 }
 
 // Returns what is left of a shape beside the stomach.
 double BesideStomach(double shape, const Eigen::Vector3d& x) {
-  return shape > kFar ? shape : SmoothMax(shape, kApart - StomachShape(x), 6);
+  return shape > kOrganFar ? shape : SmoothMax(shape, kFromStomach - StomachShape(x), 6);
 }
 
 // Above the visceral surface, which rises to the left and backwards.
@@ -60,16 +61,18 @@ double SpleenField(const Eigen::Vector3d& x) {
 }  // namespace
 
 Mesh Liver(double edge_length) {
-  return ImplicitSurface(LiverField, {{-130, -95, 60}, {80, 105, 232}}, std::min(edge_length, kMaxEdge), kDetail);
+  return ImplicitSurface(LiverField, {{-130, -95, 60}, {80, 105, 232}}, std::min(edge_length, kCoarsestOrgan),
+                         kOrganDetail);
 }
 
 Mesh Stomach(double edge_length) {
   const Field field = [](const Eigen::Vector3d& x) { return UnderSheet(StomachShape(x), x); };
-  return ImplicitSurface(field, {{-40, -85, 65}, {105, 65, 212}}, std::min(edge_length, kMaxEdge), kDetail);
+  return ImplicitSurface(field, {{-40, -85, 65}, {105, 65, 212}}, std::min(edge_length, kCoarsestOrgan), kOrganDetail);
 }
 
 Mesh Spleen(double edge_length) {
-  return ImplicitSurface(SpleenField, {{45, -15, 80}, {125, 100, 195}}, std::min(edge_length, kMaxEdge), kDetail);
+  return ImplicitSurface(SpleenField, {{45, -15, 80}, {125, 100, 195}}, std::min(edge_length, kCoarsestOrgan),
+                         kOrganDetail);
 }
 
 }  // namespace phrenic::anatomy

@@ -99,7 +99,7 @@ Mesh InferiorVenaCava(double edge_length) {
                  {opening + Eigen::Vector3d(6, 1, 18), 9.5},
                  {opening, 9.5},
                  {opening + Eigen::Vector3d(-3, -1, -18), 9.5},
-                 BeforeSpine(-30, 165, 9.5, 9),
+                 BeforeSpine(-30, 165, 9.5, 12),
                  BeforeSpine(-22, 120, 9.5, 7),
                  BeforeSpine(-19, 60, 9.5, 7),
                  BeforeSpine(-19, 5, 9.5, 7)},

@@ -4,22 +4,20 @@
 #include <cmath>
 #include <limits>
 
+#include "server/mesh/normals.h"
+
 namespace phrenic {
 namespace {
 
-constexpr double kSmoothing = 5e-3;              // n [m]
+constexpr double kSmoothing = 8e-3;              // n [m]
 constexpr double kUpright = 0.35;                // factor of vertical distances
-constexpr double kReach = 6;                     // (R^2 + n^2) / (d_min^2 + n^2)
+constexpr double kSteep = 0.08;                  // of a vertical surface, relative to a level one
+constexpr double kReach = 6;                     // S / s_min
 constexpr size_t kMostCarriers = 6000;           // bounds the time to order them, which grows with the square
 constexpr double kSmallestShare = 0.01;          // relative to the largest; smaller shares are dropped
-constexpr double kFew = 1. / 5, kMany = 1. / 3;  // of R: vertices less than the first apart are not used
-
-double Softened(double squared) { return squared + kSmoothing * kSmoothing; }
+constexpr double kFew = 1. / 5, kMany = 1. / 3;  // of sqrt(S): vertices less than the first apart are not used
 
 Eigen::Vector3d Scaled(const Eigen::Vector3d& point) { return {point.x(), point.y(), kUpright * point.z()}; }
-
-// Returns the weight of one driver among several at a distance of `squared` [m^2].
-double ShareAt(double squared) { return 1 / (Softened(squared) * Softened(squared)); }
 
 double Smoothstep(double t) {
   t = std::clamp(t, 0.0, 1.0);
@@ -44,9 +42,10 @@ std::vector<SmoothWeights::Carrier> SmoothWeights::FarthestFirst(const ModelBuil
   std::vector<Carrier> order;
   for (const int b : bodies) {
     const BodyModel& body = builder.model.bodies[b];
+    const Points normals = VertexNormals(body.mesh.vertices, body.mesh.triangles);
     for (Eigen::Index i = 0; i < body.mesh.vertices.cols(); ++i) {
-      order.push_back({Scaled(body.mesh.vertices.col(i)), std::numeric_limits<double>::infinity(),
-                       body.first_vertex + static_cast<int>(i)});
+      order.push_back({Scaled(body.mesh.vertices.col(i)), kSteep + (1 - kSteep) * normals(2, i) * normals(2, i),
+                       std::numeric_limits<double>::infinity(), body.first_vertex + static_cast<int>(i)});
     }
   }
   const size_t used = std::min(order.size(), kMostCarriers);
@@ -62,19 +61,24 @@ std::vector<SmoothWeights::Carrier> SmoothWeights::FarthestFirst(const ModelBuil
   return order;
 }
 
-// Returns d_min^2 [m^2]; infinity without deformable drivers.
+double SmoothWeights::Softened(const Carrier& carrier, const Eigen::Vector3d& scaled) {
+  return ((carrier.at - scaled).squaredNorm() + kSmoothing * kSmoothing) / carrier.level;
+}
+
+// Returns s_min [m^2]; infinity without deformable drivers.
 double SmoothWeights::Smallest(const Eigen::Vector3d& scaled) const {
   double smallest = std::numeric_limits<double>::infinity();
-  for (const Carrier& carrier : carriers_) smallest = std::min(smallest, (carrier.at - scaled).squaredNorm());
+  for (const Carrier& carrier : carriers_) smallest = std::min(smallest, Softened(carrier, scaled));
   return smallest;
 }
 
 std::vector<SmoothWeights::Share> SmoothWeights::Shares(const Eigen::Vector3d& point, double smallest) const {
   std::vector<Share> shares;
-  if (!carriers_.empty()) shares.push_back({-1, -1, ShareAt(smallest)});
+  if (!carriers_.empty()) shares.push_back({-1, -1, 1 / (smallest * smallest)});
   for (int driver = 0; driver < others_.count(); ++driver) {
     const Neighbour nearest = others_.search(driver).Nearest(point);
-    shares.push_back({driver, nearest.vertex, ShareAt(nearest.distance * nearest.distance)});
+    const double softened = nearest.distance * nearest.distance + kSmoothing * kSmoothing;
+    shares.push_back({driver, nearest.vertex, 1 / (softened * softened)});
   }
   double largest = 0, sum = 0;
   for (const Share& share : shares) largest = std::max(largest, share.weight);
@@ -85,12 +89,12 @@ std::vector<SmoothWeights::Share> SmoothWeights::Shares(const Eigen::Vector3d& p
 
 void SmoothWeights::AppendCarriers(const Eigen::Vector3d& scaled, double smallest, double share, int for_vertex,
                                    std::vector<SkinWeight>& weights) const {
-  const double at_reach = kReach * Softened(smallest), reach = std::sqrt(at_reach - kSmoothing * kSmoothing);
+  const double at_reach = kReach * smallest, reach = std::sqrt(at_reach);
   const size_t first = weights.size();
   double sum = 0;
   for (const Carrier& carrier : carriers_) {
     if (carrier.apart <= kFew * reach) break;
-    const double at = Softened((carrier.at - scaled).squaredNorm());
+    const double at = Softened(carrier, scaled);
     if (at >= at_reach) continue;
     const double peak = 1 / at - 1 / at_reach;
     const double weight = peak * peak * Smoothstep((carrier.apart / reach - kFew) / (kMany - kFew));

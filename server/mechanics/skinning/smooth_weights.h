@@ -8,12 +8,14 @@
 
 namespace phrenic {
 
-// Of the deformable drivers a point at rest follows all vertices within the distance R, each with the weight
-//   w ~ (1 / (d^2 + n^2) - 1 / (R^2 + n^2))^2, n = 5 mm, R^2 + n^2 = 6 (d_min^2 + n^2),
-// d^2 = dx^2 + dy^2 + (0.35 dz)^2, d_min the smallest d: mostly what is straight above and below. The larger R, the
-// fewer vertices are used: those of a subset whose members are about R/4 apart, of at most 6,000 vertices. Weights are
-// continuous functions of the point. All deformable drivers together and each other driver, by its nearest vertex,
-// share the motion by (d_min^2 + n^2)^(-2); shares below 1 % of the largest are dropped.
+// Of the deformable drivers a point at rest follows all vertices with s < S, each with the weight
+//   w ~ (1 / s - 1 / S)^2, S = 6 s_min,
+//   s = (dx^2 + dy^2 + (0.35 dz)^2 + n^2) / (0.08 + 0.92 nz^2), n = 8 mm, nz the vertical part of the unit normal:
+// mostly those straight above and below where the surface is level, least those on a steep wall, along which an organ
+// slides. The larger S, the fewer vertices are used: those of a subset whose members are about sqrt(S) / 4 apart, of at
+// most 6,000 vertices. Weights are continuous functions of the point. All deformable drivers together, with s_min, and
+// each other driver, with d^2 + n^2 of its nearest vertex as s, share the motion by s^(-2); shares below 1 % of the
+// largest are dropped.
 //
 // The builder must outlive it. Not thread-safe.
 class SmoothWeights {
@@ -27,6 +29,7 @@ class SmoothWeights {
   // A vertex of a deformable driver. Ordered so that each is as far as possible from those before it.
   struct Carrier {
     Eigen::Vector3d at;  // at rest, z scaled [m]
+    double level;        // 0.08 + 0.92 nz^2
     double apart;        // its distance from those before it [m]
     int simulated_vertex;
   };
@@ -37,6 +40,7 @@ class SmoothWeights {
     double weight;
   };
   static std::vector<Carrier> FarthestFirst(const ModelBuilder& builder, const std::vector<int>& bodies);
+  static double Softened(const Carrier& carrier, const Eigen::Vector3d& scaled);
   double Smallest(const Eigen::Vector3d& scaled) const;
   std::vector<Share> Shares(const Eigen::Vector3d& point, double smallest) const;
   void AppendCarriers(const Eigen::Vector3d& scaled, double smallest, double share, int for_vertex,
