@@ -63,8 +63,8 @@ std::vector<Station> OesophagusStations() {
           {hiatus + Eigen::Vector3d(0, 6.5, 24), 4.8},
           {hiatus + Eigen::Vector3d(0, 5.9, 12), 4.4},
           {hiatus + Eigen::Vector3d(0, 1, -2), 4.4},
-          {hiatus + Eigen::Vector3d(2, -9, -8), 5},
-          {hiatus + Eigen::Vector3d(14, -17, -13), 7}};
+          {hiatus + Eigen::Vector3d(2, -10, -7), 5},
+          {hiatus + Eigen::Vector3d(13, -22, -14), 6}};
 }
 
 }  // namespace
@@ -99,8 +99,8 @@ Mesh InferiorVenaCava(double edge_length) {
                  {opening + Eigen::Vector3d(6, 1, 18), 9.5},
                  {opening, 9.5},
                  {opening + Eigen::Vector3d(-3, -1, -18), 9.5},
-                 BeforeSpine(-30, 165, 9.5, 12),
-                 BeforeSpine(-22, 120, 9.5, 7),
+                 BeforeSpine(-36, 168, 9.5, 22),
+                 BeforeSpine(-24, 120, 9.5, 12),
                  BeforeSpine(-19, 60, 9.5, 7),
                  BeforeSpine(-19, 5, 9.5, 7)},
                 edge_length);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSmoothing = 8e-3;              // n [m]
 constexpr double kUpright = 0.35;                // factor of vertical distances
-constexpr double kSteep = 0.08;                  // of a vertical surface, relative to a level one
+constexpr double kSteep = 0.008;                 // of a vertical surface, relative to a level one
 constexpr double kReach = 6;                     // S / s_min
 constexpr size_t kMostCarriers = 6000;           // bounds the time to order them, which grows with the square
 constexpr double kSmallestShare = 0.01;          // relative to the largest; smaller shares are dropped
@@ -72,12 +72,18 @@ double SmoothWeights::Smallest(const Eigen::Vector3d& scaled) const {
   return smallest;
 }
 
-std::vector<SmoothWeights::Share> SmoothWeights::Shares(const Eigen::Vector3d& point, double smallest) const {
-  std::vector<Share> shares;
-  if (!carriers_.empty()) shares.push_back({-1, -1, 1 / (smallest * smallest)});
+// Returns the shares of all deformable drivers together and of each other one.
+std::vector<SmoothWeights::Share> SmoothWeights::Shares(const Eigen::Vector3d& point) const {
+  if (others_.count() == 0) return {{-1, -1, 1}};
+  double softened = std::numeric_limits<double>::infinity();
+  for (const Carrier& carrier : carriers_) {
+    const Eigen::Vector3d apart = point - Eigen::Vector3d(carrier.at.x(), carrier.at.y(), carrier.at.z() / kUpright);
+    softened = std::min(softened, (apart.squaredNorm() + kSmoothing * kSmoothing) / carrier.level);
+  }
+  std::vector<Share> shares = {{-1, -1, 1 / (softened * softened)}};
   for (int driver = 0; driver < others_.count(); ++driver) {
     const Neighbour nearest = others_.search(driver).Nearest(point);
-    const double softened = nearest.distance * nearest.distance + kSmoothing * kSmoothing;
+    softened = nearest.distance * nearest.distance + kSmoothing * kSmoothing;
     shares.push_back({driver, nearest.vertex, 1 / (softened * softened)});
   }
   double largest = 0, sum = 0;
@@ -106,11 +112,10 @@ void SmoothWeights::AppendCarriers(const Eigen::Vector3d& scaled, double smalles
 
 void SmoothWeights::Append(const Eigen::Vector3d& point, int for_vertex, std::vector<SkinWeight>& weights) const {
   const Eigen::Vector3d scaled = Scaled(point);
-  const double smallest = Smallest(scaled);
-  for (const Share& share : Shares(point, smallest)) {
+  for (const Share& share : Shares(point)) {
     if (share.weight == 0) continue;
     if (share.driver < 0) {
-      AppendCarriers(scaled, smallest, share.weight, for_vertex, weights);
+      AppendCarriers(scaled, Smallest(scaled), share.weight, for_vertex, weights);
     } else {
       others_.AppendWeights({share.driver, share.vertex, 0}, for_vertex, share.weight, weights);
     }
