@@ -29,7 +29,7 @@ const kinds = {
     scatter: 0.05,
     section: "#aab5ae",
   },
-  organ: { roughness: 0.55, sheen: 0.12, fibres: 0, spots: 0.12, spotSize: 0.008, scatter: 0.1, section: "#6b2620" },
+  organ: { roughness: 0.55, sheen: 0.12, fibres: 0, spots: 0.12, spotSize: 0.008, scatter: 0.1, section: "#63332a" },
   vessel: { roughness: 0.5, sheen: 0.1, fibres: 0, spots: 0.05, spotSize: 0.008, scatter: 0.1 },
   lung: { roughness: 0.8, sheen: 0.1, fibres: 0, spots: 0.2, spotSize: 0.006, scatter: 0.4 },
   other: { roughness: 0.6, sheen: 0.05, fibres: 0, spots: 0, spotSize: 1, scatter: 0 },
