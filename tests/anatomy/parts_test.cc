@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/mesh/self_crossings.h"
 #include "server/mesh/topology.h"
 
 namespace phrenic::anatomy {
@@ -30,6 +31,13 @@ void ExpectValidSurface(const v1::Anatomy& part, double resolution_mm) {
 
 TEST(Parts, SurfacesAreClosedOutwardAndConnected) {
   for (const v1::Anatomy& part : AllParts()) ExpectValidSurface(part, 0);
+}
+
+TEST(Parts, SurfacesDoNotCrossThemselves) {
+  constexpr double kCell = 6e-3;  // about the longest edge [m]
+  for (const v1::Anatomy& part : AllParts()) {
+    EXPECT_EQ(SelfCrossings(MeshOf(part), kCell), 0) << part.ShortDebugString();
+  }
 }
 
 TEST(Parts, StayClosedAtCoarseResolutions) {
