@@ -35,7 +35,6 @@ double DefaultResolution(v1::Structure structure, v1::Sheet sheet) {
     case v1::STRUCTURE_LUNG:
       return 5;
     case v1::STRUCTURE_VERTEBRA:
-      return 3.4;
     case v1::STRUCTURE_DISC:
     case v1::STRUCTURE_MANUBRIUM:
     case v1::STRUCTURE_STERNUM_BODY:
@@ -47,9 +46,9 @@ double DefaultResolution(v1::Structure structure, v1::Sheet sheet) {
     case v1::STRUCTURE_SPLEEN:
       return 5;
     case v1::STRUCTURE_HEART:
-      return 5.5;
-    case v1::STRUCTURE_STOMACH:
       return 6;
+    case v1::STRUCTURE_STOMACH:
+      return 6.5;
     case v1::STRUCTURE_LIVER:
       return 7.5;
     default:

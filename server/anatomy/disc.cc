@@ -11,7 +11,8 @@
 namespace phrenic::anatomy {
 
 Mesh Disc(int number, double edge_length) {
-  constexpr double kBulge = 0.7, kGap = 0.3, kRounded = 2, kOverlap = 1.5, kMaxEdge = 3, kDetail = 2, kFar = 4;  // [mm]
+  constexpr double kBulge = 0.7, kGap = 0.3, kRounded = 2, kOverlap = 1.5, kMaxEdge = 3.4, kDetail = 2,
+                   kFar = 4;  // [mm]
   const VertebralBody above = BodyOfVertebra(number), below = BodyOfVertebra(number + 1);
   const double middle = (above.bottom + below.top) / 2, half_height = (above.bottom - below.top) / 2 + kOverlap;
   const double a = (above.width + below.width) / 4 + kBulge, b = (above.depth + below.depth) / 4 + kBulge;
