@@ -3,21 +3,26 @@
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
+#include "server/anatomy/abdominal_organs.h"
+#include "server/anatomy/airways.h"
 #include "server/anatomy/cartilage.h"
 #include "server/anatomy/diaphragm_mesh.h"
 #include "server/anatomy/dimensions.h"
+#include "server/anatomy/disc.h"
+#include "server/anatomy/heart.h"
 #include "server/anatomy/inner_cage.h"
 #include "server/anatomy/lung.h"
 #include "server/anatomy/middle_sheet.h"
 #include "server/anatomy/rib.h"
 #include "server/anatomy/sternum.h"
 #include "server/anatomy/vertebra.h"
+#include "server/anatomy/vessels.h"
 #include "server/mesh/units.h"
 
 namespace phrenic::anatomy {
 namespace {
 
-constexpr int kCartilages = 10;
+constexpr int kCartilages = 10, kVenaeCavae = 2;
 constexpr double kCoarsest = 50;  // [mm]
 
 // The default edge length [mm].
@@ -30,7 +35,22 @@ double DefaultResolution(v1::Structure structure, v1::Sheet sheet) {
     case v1::STRUCTURE_LUNG:
       return 5;
     case v1::STRUCTURE_VERTEBRA:
+    case v1::STRUCTURE_DISC:
+    case v1::STRUCTURE_MANUBRIUM:
+    case v1::STRUCTURE_STERNUM_BODY:
       return 3.4;
+    case v1::STRUCTURE_XIPHOID:
+      return 2.4;
+    case v1::STRUCTURE_AORTA:
+    case v1::STRUCTURE_VENA_CAVA:
+    case v1::STRUCTURE_SPLEEN:
+      return 5;
+    case v1::STRUCTURE_HEART:
+      return 6;
+    case v1::STRUCTURE_STOMACH:
+      return 6.5;
+    case v1::STRUCTURE_LIVER:
+      return 7.5;
     default:
       return 4.1;
   }
@@ -38,7 +58,17 @@ double DefaultResolution(v1::Structure structure, v1::Sheet sheet) {
 
 // The finest edge length [mm]; bounds the time to seconds and the memory to some hundred megabytes.
 double FinestResolution(v1::Structure structure) {
-  return structure == v1::STRUCTURE_LUNG || structure == v1::STRUCTURE_VERTEBRA ? 2 : 1;
+  switch (structure) {
+    case v1::STRUCTURE_LUNG:
+    case v1::STRUCTURE_VERTEBRA:
+    case v1::STRUCTURE_HEART:
+    case v1::STRUCTURE_LIVER:
+    case v1::STRUCTURE_STOMACH:
+    case v1::STRUCTURE_SPLEEN:
+      return 2;
+    default:
+      return 1;
+  }
 }
 
 absl::Status CheckResolution(const v1::Anatomy& part, double resolution_mm) {
@@ -74,9 +104,20 @@ absl::Status CheckPart(const v1::Anatomy& part) {
     case v1::STRUCTURE_STERNUM_BODY:
     case v1::STRUCTURE_XIPHOID:
     case v1::STRUCTURE_INNER_CAGE:
+    case v1::STRUCTURE_HEART:
+    case v1::STRUCTURE_AORTA:
+    case v1::STRUCTURE_OESOPHAGUS:
+    case v1::STRUCTURE_TRACHEA:
+    case v1::STRUCTURE_LIVER:
+    case v1::STRUCTURE_STOMACH:
+    case v1::STRUCTURE_SPLEEN:
       return absl::OkStatus();
     case v1::STRUCTURE_VERTEBRA:
       return NeedsNumber(part, kVertebrae);
+    case v1::STRUCTURE_DISC:
+      return NeedsNumber(part, kDiscs);
+    case v1::STRUCTURE_VENA_CAVA:
+      return NeedsNumber(part, kVenaeCavae);
     case v1::STRUCTURE_LUNG:
       return NeedsSide(part);
     case v1::STRUCTURE_RIB:
@@ -92,6 +133,29 @@ absl::Status CheckPart(const v1::Anatomy& part) {
 
 Mesh OnSide(const v1::Anatomy& part, Mesh left) {
   return part.side() == v1::SIDE_RIGHT ? Mirrored(std::move(left)) : std::move(left);
+}
+
+Mesh Organ(const v1::Anatomy& part, double edge_length) {
+  switch (part.structure()) {
+    case v1::STRUCTURE_HEART:
+      return Heart(edge_length);
+    case v1::STRUCTURE_AORTA:
+      return Aorta(edge_length);
+    case v1::STRUCTURE_VENA_CAVA:
+      return part.number() == 1 ? SuperiorVenaCava(edge_length) : InferiorVenaCava(edge_length);
+    case v1::STRUCTURE_OESOPHAGUS:
+      return Oesophagus(edge_length);
+    case v1::STRUCTURE_TRACHEA:
+      return Trachea(edge_length);
+    case v1::STRUCTURE_LIVER:
+      return Liver(edge_length);
+    case v1::STRUCTURE_STOMACH:
+      return Stomach(edge_length);
+    case v1::STRUCTURE_SPLEEN:
+      return Spleen(edge_length);
+    default:
+      return {};
+  }
 }
 
 Mesh InMillimetres(const v1::Anatomy& part, double edge_length, v1::Sheet sheet) {
@@ -112,10 +176,12 @@ Mesh InMillimetres(const v1::Anatomy& part, double edge_length, v1::Sheet sheet)
       return Xiphoid(edge_length);
     case v1::STRUCTURE_VERTEBRA:
       return Vertebra(part.number(), edge_length);
+    case v1::STRUCTURE_DISC:
+      return Disc(part.number(), edge_length);
     case v1::STRUCTURE_LUNG:
       return part.side() == v1::SIDE_RIGHT ? RightLung(edge_length) : LeftLung(edge_length);
     default:
-      return {};
+      return Organ(part, edge_length);
   }
 }
 
@@ -131,9 +197,19 @@ double Area(v1::Structure structure, v1::Sheet sheet) {
     case v1::STRUCTURE_VERTEBRA:
       return 12'000;
     case v1::STRUCTURE_COSTAL_CARTILAGE:
-      return 4'000;
+      return 5'000;
     case v1::STRUCTURE_XIPHOID:
       return 2'000;
+    case v1::STRUCTURE_DISC:
+      return 5'000;
+    case v1::STRUCTURE_HEART:
+    case v1::STRUCTURE_STOMACH:
+      return 50'000;
+    case v1::STRUCTURE_LIVER:
+      return 90'000;
+    case v1::STRUCTURE_AORTA:
+    case v1::STRUCTURE_SPLEEN:
+      return 25'000;
     default:
       return 11'000;
   }

@@ -6,25 +6,29 @@
 
 #include "server/anatomy/dimensions.h"
 #include "server/anatomy/rib.h"
+#include "server/anatomy/smooth.h"
 #include "server/anatomy/sternum.h"
 
 namespace phrenic::anatomy {
 namespace {
 
 constexpr int kTrueRibs = 7;
+constexpr double kStraight = 5;  // length over which a cartilage keeps the direction of its rib [mm]
 
-// Where cartilages 1 to 7 meet the edge of the sternum.
-Eigen::Vector3d SternalEnd(int number) {
-  const double z = SternalNotch(number);
-  return {SternumHalfWidth(z) + 1, SternumLine(z) + 1, z};
+// Semi-axes at the medial end [mm].
+struct MedialEnd {
+  double broad, thin;
+};
+
+MedialEnd MedialEndOf(int number) {
+  if (number == 1) return {6.2, 3.8};
+  return number <= kTrueRibs ? MedialEnd{5.2, 4.0} : MedialEnd{4.2, 2.4};
 }
 
-// Where cartilages 8 to 10 meet the one above: at its lower edge, in its lateral half.
-Eigen::Vector3d EndOnCartilageAbove(int number) {
-  constexpr int kSamples = 101;
-  const Curve above = SmoothCurve(LeftCartilagePath(number - 1), kSamples);
-  const size_t at = number == kTrueRibs + 1 ? 40 : 36;
-  return above[at] - Eigen::Vector3d(0, 0, 7);
+// Where cartilages 1 to 7 meet the sternum.
+Eigen::Vector3d SternalEnd(int number) {
+  const double z = SternalNotch(number);
+  return {SternumHalfWidth(z) + 1.5, SternumLine(z) + 1, z};
 }
 
 double AzimuthOf(const Eigen::Vector3d& point) {
@@ -32,37 +36,88 @@ double AzimuthOf(const Eigen::Vector3d& point) {
   return std::atan2(q.x(), -q.y());
 }
 
-}  // namespace
+// The cubic with the values and slopes of its ends at t = 0 and 1.
+double Hermite(double from, double from_slope, double to, double to_slope, double t) {
+  const double u = 1 - t;
+  return from * (1 + 2 * t) * u * u + from_slope * t * u * u + to * t * t * (3 - 2 * t) - to_slope * t * t * u;
+}
 
-Curve LeftCartilagePath(int number) {
-  const Eigen::Vector3d from = LeftRibPath(number).back();
-  const Eigen::Vector3d to = number <= kTrueRibs ? SternalEnd(number) : EndOnCartilageAbove(number);
-  const double from_azimuth = AzimuthOf(from), to_azimuth = AzimuthOf(to);
-  const double dip = number >= 5 && number <= 8 ? 2.5 * (number - 4) : 0;       // descends before it turns up
-  const double late = number >= 5 && number <= 7 ? 1 + 0.2 * (number - 4) : 1;  // exponent; above 1 it rises late
-  const int steps = number <= 4 ? 3 : 7;
-  Curve path = {from};
-  for (int i = 1; i < steps; ++i) {
-    const double t = static_cast<double>(i) / steps;
+struct PathEnd {
+  Eigen::Vector3d at;
+  double slope;  // rise per horizontal distance, forwards
+};
+
+// Appends the points between two ends: on the cage, or on the way from it to the sternum.
+void AppendBetween(const PathEnd& from, const PathEnd& to, bool leaves_cage, Curve& path) {
+  constexpr int kSteps = 7;
+  const double from_azimuth = AzimuthOf(from.at), to_azimuth = AzimuthOf(to.at);
+  const double run = (to.at - from.at).head<2>().norm();
+  for (int i = 1; i < kSteps; ++i) {
+    const double t = static_cast<double>(i) / kSteps;
     const double azimuth = from_azimuth + (to_azimuth - from_azimuth) * t;
-    const double rise = std::pow(t, late);
-    const double z = from.z() + (to.z() - from.z()) * rise - dip * 4 * t * (1 - t) * (1 - t);
+    const double z = Hermite(from.at.z(), run * from.slope, to.at.z(), run * to.slope, t);
     const Eigen::Vector2d on_cage = CageSection(z, 0).Point({std::sin(azimuth), -std::cos(azimuth)});
-    const Eigen::Vector3d straight = from + (to - from) * t;
-    const double blend = t * t;  // from the cage's surface to the straight line that ends at `to`
-    path.emplace_back((1 - blend) * on_cage.x() + blend * straight.x(),
-                      (1 - blend) * on_cage.y() + blend * straight.y(), z);
+    const Eigen::Vector2d straight = (from.at + (to.at - from.at) * t).head<2>();
+    const Eigen::Vector2d xy = on_cage + (leaves_cage ? t * t : 0.0) * (straight - on_cage);
+    path.emplace_back(xy.x(), xy.y(), z);
   }
-  path.push_back(to);
+}
+
+// A true cartilage rises to the sternum; the lower ones the more steeply.
+Curve TruePath(int number, Curve path, const PathEnd& from) {
+  const Eigen::Vector3d end = SternalEnd(number);
+  const double mean = (end.z() - from.at.z()) / (end - from.at).head<2>().norm();
+  AppendBetween(from, {end, number >= 4 ? 1.25 * mean : 0.6 * mean}, true, path);
+  path.push_back(end);
   return path;
 }
 
-Mesh LeftCartilage(int number, double edge_length) {
-  const auto section = [number](double s, const Eigen::Vector3d& centre) {
-    const double narrowing = number > kTrueRibs ? 2.2 * s : 1.0 * s;
-    return TubeSection{6.6 - narrowing, 4.0 - 0.4 * narrowing, OutOfCage(centre)};
+// A false cartilage merges into the lower edge of the one above and follows it.
+Curve FalsePath(int number, Curve path, const PathEnd& from) {
+  constexpr int kSamples = 101;
+  const Curve above = SmoothCurve(LeftCartilagePath(number - 1), kSamples);
+  const double step = Length(above) / (kSamples - 1);
+  const int first = number == kTrueRibs + 1 ? 40 : 36;
+  const auto beside = [&](double further, double below) {
+    const int at = std::min(kSamples - 2, first + static_cast<int>(std::lround(further / step)));
+    const Eigen::Vector3d along = (above[at + 1] - above[at - 1]).normalized();
+    return Eigen::Vector3d(above[at] + below * OutOfCage(above[at]).cross(along).normalized());
   };
-  return Tube(LeftCartilagePath(number), section, edge_length);
+  const Eigen::Vector3d join = beside(0, 9), next = beside(9, 6.8), rise = beside(4.5, 9) - beside(-4.5, 9);
+  AppendBetween(from, {join, rise.z() / rise.head<2>().norm()}, false, path);
+  path.insert(path.end(), {join, next, beside(18, 3.5), beside(27, 0.2)});
+  return path;
+}
+
+}  // namespace
+
+Curve LeftCartilagePath(int number) {
+  const RibEnd rib = LeftRibEnd(number);
+  const Eigen::Vector3d straight = rib.centre + kStraight * rib.along;
+  const PathEnd from{straight, std::max(-0.8, rib.along.z() / rib.along.head<2>().norm())};
+  return number <= kTrueRibs ? TruePath(number, {rib.centre, straight}, from)
+                             : FalsePath(number, {rib.centre, straight}, from);
+}
+
+Mesh LeftCartilage(int number, double edge_length) {
+  const RibEnd rib = LeftRibEnd(number);
+  const MedialEnd end = MedialEndOf(number);
+  const auto section = [&](double s, const Eigen::Vector3d& centre) {
+    TubeSection at = rib.section;
+    const double t = Smooth(1.1 * s - 0.1);
+    const double keep = 1 - (number == 1 ? 0.6 : 1) * Smooth(s / 0.6);  // the first one stays oblique
+    at.half_broad += t * (end.broad - at.half_broad);
+    at.half_thin += t * (end.thin - at.half_thin);
+    at.thin = keep * rib.section.thin.normalized() + (1 - keep) * OutOfCage(centre);
+    at.taper *= keep;
+    return at;
+  };
+  return Tube({.through = LeftCartilagePath(number),
+               .section = section,
+               .first = TubeEnd::kStraight,
+               .start = rib.along,
+               .radius = (rib.section.half_broad + rib.section.half_thin) / 2},
+              edge_length);
 }
 
 }  // namespace phrenic::anatomy

@@ -15,8 +15,6 @@ constexpr double kPleura = 5;       // distance of the lung from the ribs' centr
 constexpr double kAboveDome = 3.5;  // distance of the base from the diaphragm's middle surface [mm]
 constexpr double kTop = 393;        // z of the apex [mm]
 
-double SmoothMax(double a, double b, double k) { return -SmoothMin(-a, -b, k); }
-
 // The fields below are approximate signed distances [mm], negative where lung may be.
 
 // Inside the chest wall, which narrows to the pleural cupola.
@@ -56,15 +54,17 @@ double OutsideMediastinum(const Eigen::Vector3d& x, bool left) {
 }
 
 Mesh Lung(bool left, double edge_length) {
-  const Field field = [left](const Eigen::Vector3d& x) {
-    return SmoothMax(SmoothMax(InsideCage(x), AboveDiaphragm(x), 8), OutsideMediastinum(x, left), 16);
-  };
+  const Field field = [left](const Eigen::Vector3d& x) { return LungField(x, left); };
   constexpr double kDetail = 5;
   const Box box{{left ? 0.0 : -135.0, -105, 95}, {left ? 135.0 : 0.0, 110, 405}};
   return ImplicitSurface(field, box, edge_length, kDetail);
 }
 
 }  // namespace
+
+double LungField(const Eigen::Vector3d& x, bool left) {
+  return SmoothMax(SmoothMax(InsideCage(x), AboveDiaphragm(x), 8), OutsideMediastinum(x, left), 16);
+}
 
 Mesh LeftLung(double edge_length) { return Lung(true, edge_length); }
 

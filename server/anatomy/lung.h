@@ -3,6 +3,8 @@
 #ifndef PHRENIC_SERVER_ANATOMY_LUNG_H_
 #define PHRENIC_SERVER_ANATOMY_LUNG_H_
 
+#include <Eigen/Core>
+
 #include "server/mesh/mesh.h"
 
 namespace phrenic::anatomy {
@@ -13,6 +15,10 @@ namespace phrenic::anatomy {
 // about `edge_length` [mm].
 Mesh LeftLung(double edge_length);
 Mesh RightLung(double edge_length);
+
+// Returns the field of which a lung is the inside: an approximate signed distance [mm], negative inside. What lies
+// between the lungs stays outside of both.
+double LungField(const Eigen::Vector3d& x, bool left);
 
 }  // namespace phrenic::anatomy
 

@@ -1,4 +1,5 @@
-// Manubrium, body of the sternum and xiphoid process: flat plates along the sternum's tilted midline.
+// Manubrium, body of the sternum and xiphoid process: plates along the sternum's tilted midline, with jugular,
+// clavicular and costal notches, joined by thin synchondroses.
 #ifndef PHRENIC_SERVER_ANATOMY_STERNUM_H_
 #define PHRENIC_SERVER_ANATOMY_STERNUM_H_
 

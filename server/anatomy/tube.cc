@@ -38,67 +38,85 @@ Curve Dense(const Curve& through) {
   return dense;
 }
 
+// One ring of the tube: its section in space.
 struct Profile {
-  Eigen::Vector3d centre, broad, thin;  // semi-axes as vectors
+  Eigen::Vector3d centre, broad, thin, along;  // unit vectors but for the centre
+  TubeSection section;
 };
 
-Profile RingAt(const Curve& path, size_t i, const TubeSection& section) {
-  const Eigen::Vector3d along = path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0];
+Profile RingAt(const Eigen::Vector3d& centre, const Eigen::Vector3d& along, const TubeSection& section) {
   const Eigen::Vector3d broad = section.thin.cross(along).normalized();
-  const Eigen::Vector3d thin = along.cross(broad).normalized();
-  return {path[i], section.half_broad * broad, section.half_thin * thin};
+  return {centre, broad, along.cross(broad).normalized(), along.normalized(), section};
 }
 
-// Returns one ring per path point and two more at each end that round it off.
-std::vector<Profile> Rings(const Curve& path, const SectionAt& section) {
-  constexpr double kAngles[] = {62, 34};  // degrees along the quarter circle at an end
+// Returns the profile moved along the curve, its section made smaller by `inset` on all sides.
+Profile Moved(const Profile& ring, double along, double inset) {
+  Profile moved = ring;
+  moved.centre += along * ring.along;
+  moved.section.half_broad -= inset;
+  moved.section.half_thin -= inset;
+  moved.section.bulge *= moved.section.half_thin / ring.section.half_thin;
+  return moved;
+}
+
+// Returns the rings that end the tube beyond `ring`, the outermost last; `side` is 1 at the end and -1 at the start of
+// the curve.
+std::vector<Profile> EndRings(const Profile& ring, TubeEnd end, int side) {
+  const double thick = ring.section.half_thin;
+  if (end == TubeEnd::kStraight) return {Moved(ring, 0, 0.45 * thick)};
   std::vector<Profile> rings;
-  const double last = static_cast<double>(path.size()) - 1;
-  for (size_t i = 0; i < path.size(); ++i) {
-    rings.push_back(RingAt(path, i, section(static_cast<double>(i) / last, path[i])));
+  for (const double degrees : {32, 62}) {  // along the quarter circle
+    const double angle = degrees * std::numbers::pi / 180;
+    rings.push_back(Moved(ring, side * thick * std::sin(angle), thick * (1 - std::cos(angle))));
   }
-  const auto rounded = [&](const Profile& ring, const Eigen::Vector3d& outwards, double degrees) {
-    const double reach = ring.thin.norm() * std::sin(degrees * std::numbers::pi / 180);
-    const double inset = ring.thin.norm() * (1 - std::cos(degrees * std::numbers::pi / 180));
-    const double broad = 1 - inset / ring.broad.norm(), thin = 1 - inset / ring.thin.norm();
-    return Profile{ring.centre + reach * outwards, broad * ring.broad, thin * ring.thin};
-  };
-  const Profile first = rings.front(), end = rings.back();
-  const Eigen::Vector3d before = (path[0] - path[1]).normalized();
-  const Eigen::Vector3d behind = (path[path.size() - 1] - path[path.size() - 2]).normalized();
-  rings.insert(rings.begin(), rounded(first, before, kAngles[1]));
-  rings.insert(rings.begin(), rounded(first, before, kAngles[0]));
-  rings.push_back(rounded(end, behind, kAngles[1]));
-  rings.push_back(rounded(end, behind, kAngles[0]));
   return rings;
 }
 
-// Returns `count` parameter angles at equal arc lengths of the ellipse, offset by `shift` steps.
-std::vector<double> EvenAngles(double broad, double thin, int count, double shift) {
-  constexpr int kFine = 720;
-  std::vector<double> passed = {0};
-  for (int i = 0; i < kFine; ++i) {
-    const double angle = 2 * std::numbers::pi * (i + 0.5) / kFine;
-    passed.push_back(passed.back() + std::hypot(broad * std::sin(angle), thin * std::cos(angle)));
+// Returns a ring close to a straight end, which keeps the crease there narrow in the shading; none at a round end.
+std::vector<Profile> CreaseRing(const Profile& ring, TubeEnd end, int side) {
+  if (end == TubeEnd::kRound) return {};
+  return {Moved(ring, -0.15 * side * ring.section.half_thin, 0)};
+}
+
+constexpr int kFine = 8;  // steps of the curve between rings, for their directions
+
+// Returns one ring per kFine points of the curve and those that end the tube.
+std::vector<Profile> Rings(const TubeShape& shape, const Curve& curve) {
+  std::vector<Profile> inner;
+  const size_t last = curve.size() - 1;
+  for (size_t i = 0; i <= last; i += kFine) {
+    Eigen::Vector3d along = curve[std::min(i + 1, last)] - curve[i > 0 ? i - 1 : 0];
+    if (i == 0 && !shape.start.isZero()) along = shape.start;
+    const TubeSection section = shape.section(static_cast<double>(i) / static_cast<double>(last), curve[i]);
+    inner.push_back(RingAt(curve[i], along, section));
   }
-  std::vector<double> angles;
-  int at = 0;
-  for (int i = 0; i < count; ++i) {
-    const double target = passed.back() * (i + shift) / count;
-    while (passed[at + 1] <= target) ++at;
-    angles.push_back(2 * std::numbers::pi * (at + (target - passed[at]) / (passed[at + 1] - passed[at])) / kFine);
-  }
-  return angles;
+  std::vector<Profile> rings = EndRings(inner.front(), shape.first, -1);
+  std::reverse(rings.begin(), rings.end());
+  const auto append = [&rings](const std::vector<Profile>& more) {
+    rings.insert(rings.end(), more.begin(), more.end());
+  };
+  rings.push_back(inner.front());
+  append(CreaseRing(inner.front(), shape.first, -1));
+  rings.insert(rings.end(), inner.begin() + 1, inner.end() - 1);
+  append(CreaseRing(inner.back(), shape.last, 1));
+  rings.push_back(inner.back());
+  append(EndRings(inner.back(), shape.last, 1));
+  return rings;
+}
+
+Eigen::Vector3d OnRing(const Profile& ring, double angle) {
+  const TubeSection& s = ring.section;
+  const auto flattened = [&s](double x) { return std::copysign(std::pow(std::abs(x), 1 - s.flatness), x); };
+  const double cosine = flattened(std::cos(angle)), sine = flattened(std::sin(angle));
+  const double thick = s.half_thin * (1 - s.taper * cosine) + s.bulge * std::max(0.0, sine);
+  return ring.centre + s.half_broad * cosine * ring.broad + thick * sine * ring.thin;
 }
 
 Points RingPoints(const std::vector<Profile>& rings, int around) {
   Points points(3, static_cast<Eigen::Index>(rings.size()) * around);
   Eigen::Index column = 0;
-  for (size_t r = 0; r < rings.size(); ++r) {
-    const double shift = r % 2 == 0 ? 0 : 0.5;
-    for (const double angle : EvenAngles(rings[r].broad.norm(), rings[r].thin.norm(), around, shift)) {
-      points.col(column++) = rings[r].centre + std::cos(angle) * rings[r].broad + std::sin(angle) * rings[r].thin;
-    }
+  for (const Profile& ring : rings) {
+    for (int i = 0; i < around; ++i) points.col(column++) = OnRing(ring, 2 * std::numbers::pi * i / around);
   }
   return points;
 }
@@ -125,12 +143,12 @@ Triangles RingTriangles(int rings, int around) {
     const int here = r * around, next = here + around;
     for (int i = 0; i < around; ++i) {
       const int j = (i + 1) % around;
-      if (r % 2 == 0) {  // the next ring is offset by half a step
-        triangles.emplace_back(here + i, here + j, next + i);
-        triangles.emplace_back(here + j, next + j, next + i);
-      } else {
+      if (i % 2 == 0) {  // diagonals that alternate favour no sense of rotation
         triangles.emplace_back(here + i, here + j, next + j);
         triangles.emplace_back(here + i, next + j, next + i);
+      } else {
+        triangles.emplace_back(here + i, here + j, next + i);
+        triangles.emplace_back(here + j, next + j, next + i);
       }
     }
   }
@@ -141,10 +159,10 @@ Triangles RingTriangles(int rings, int around) {
   return result;
 }
 
-// Ramanujan's approximation of the ellipse's perimeter.
-double Perimeter(const TubeSection& s) {
-  return std::numbers::pi * (3 * (s.half_broad + s.half_thin) -
-                             std::sqrt((3 * s.half_broad + s.half_thin) * (s.half_broad + 3 * s.half_thin)));
+int VerticesAround(const TubeShape& shape, const Curve& curve, double edge_length) {
+  const TubeSection middle = shape.section(0.5, curve[curve.size() / 2]);
+  const double radius = shape.radius > 0 ? shape.radius : (middle.half_broad + middle.half_thin) / 2;
+  return std::max(10, 2 * static_cast<int>(std::lround(std::numbers::pi * radius / (0.6 * edge_length))));
 }
 
 }  // namespace
@@ -174,14 +192,14 @@ Curve SmoothCurve(const Curve& through, int count) {
   return even;
 }
 
-Mesh Tube(const Curve& through, const SectionAt& section, double edge_length) {
-  const double length = Length(Dense(through));
-  const int stations = std::max(3, 1 + static_cast<int>(std::lround(length / (0.9 * edge_length))));
-  const Curve path = SmoothCurve(through, stations);
-  const size_t middle = path.size() / 2;
-  const double perimeter = Perimeter(section(0.5, path[middle]));
-  const int around = std::max(6, 2 * static_cast<int>(std::lround(perimeter / (2 * edge_length))));
-  const std::vector<Profile> rings = Rings(path, section);
+Mesh Tube(const TubeShape& shape, double edge_length) {
+  const double length = Length(Dense(shape.through));
+  constexpr double kFarthest = 12;  // between rings [mm]; more gives slivers where a ring has many vertices
+  const double step = std::min(1.3 * edge_length, kFarthest);
+  const int spans = std::max(3, static_cast<int>(std::lround(length / step)));
+  const Curve curve = SmoothCurve(shape.through, kFine * spans + 1);
+  const int around = VerticesAround(shape, curve, edge_length);
+  const std::vector<Profile> rings = Rings(shape, curve);
   Mesh mesh;
   mesh.vertices = RingPoints(rings, around);
   mesh.triangles = RingTriangles(static_cast<int>(rings.size()), around);

@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_ANATOMY_VERTEBRA_H_
 #define PHRENIC_SERVER_ANATOMY_VERTEBRA_H_
 
+#include "server/anatomy/field.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic::anatomy {
@@ -10,6 +11,9 @@ namespace phrenic::anatomy {
 // union of signed distances. Closed, genus 1 (the vertebral canal). Spinous processes slope most at T5 to T8;
 // transverse processes point backwards in the thorax and sideways in the lumbar spine.
 Mesh Vertebra(int number, double edge_length);
+
+// Returns the body of vertebra 1 to 15 at its position, without its arch and processes.
+Field VertebralBodyField(int number);
 
 }  // namespace phrenic::anatomy
 

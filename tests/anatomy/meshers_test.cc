@@ -1,6 +1,8 @@
 // Mesh generators on shapes with known properties.
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "server/anatomy/implicit_surface.h"
 #include "server/anatomy/plane_delaunay.h"
 #include "server/anatomy/plane_region.h"
@@ -100,7 +102,7 @@ TEST(ImplicitSurface, TorusKeepsItsHandle) {
 
 TEST(Tube, StraightTubeHasTheCylindersVolume) {
   const auto section = [](double, const Eigen::Vector3d&) { return TubeSection{5, 5, Eigen::Vector3d::UnitY()}; };
-  const Mesh mesh = Tube({{0, 0, 0}, {50, 0, 0}, {100, 0, 0}}, section, 1);
+  const Mesh mesh = Tube({.through = {{0, 0, 0}, {50, 0, 0}, {100, 0, 0}}, .section = section}, 1);
   const SurfaceTopology topology = AnalyseTopology(mesh);
   EXPECT_TRUE(topology.watertight());
   EXPECT_EQ(topology.genus(), 0);
@@ -109,9 +111,52 @@ TEST(Tube, StraightTubeHasTheCylindersVolume) {
   EXPECT_LT(volume, M_PI * 25 * (100 + 4 / 3.0 * 5)) << "no more than with half spheres at its ends";
 }
 
+// Rings turned against each other make an outline scalloped like a rope.
+TEST(Tube, StraightTubeHasStraightOutlines) {
+  const auto section = [](double, const Eigen::Vector3d&) { return TubeSection{6, 3, Eigen::Vector3d::UnitY(), 0.2}; };
+  const Mesh mesh = Tube({.through = {{0, 0, 0}, {50, 0, 0}, {100, 0, 0}},
+                          .section = section,
+                          .first = TubeEnd::kStraight,
+                          .last = TubeEnd::kStraight},
+                         4);
+  std::map<std::pair<long, long>, int> lines;  // by the position across
+  for (const auto& x : mesh.vertices.colwise()) ++lines[{std::lround(1e6 * x.y()), std::lround(1e6 * x.z())}];
+  std::vector<int> counts;
+  for (const auto& [across, count] : lines) counts.push_back(count);
+  std::sort(counts.rbegin(), counts.rend());
+  ASSERT_GE(counts.size(), 10u);
+  EXPECT_GT(counts[9], 19) << "at least ten lines of vertices from end to end";
+}
+
+TEST(Tube, StraightEndsOfTwoTubesMeet) {
+  const auto section = [](double, const Eigen::Vector3d&) { return TubeSection{6, 3, Eigen::Vector3d::UnitY(), 0.2}; };
+  const Mesh first = Tube({.through = {{0, 0, 0}, {30, 0, 0}}, .section = section, .last = TubeEnd::kStraight}, 4);
+  const Mesh next = Tube({.through = {{30, 0, 0}, {70, 20, 0}},
+                          .section = section,
+                          .first = TubeEnd::kStraight,
+                          .start = Eigen::Vector3d::UnitX()},
+                         4);
+  int met = 0;
+  for (const auto& x : first.vertices.colwise()) {
+    if ((next.vertices.colwise() - x).colwise().norm().minCoeff() < 1e-9) ++met;
+  }
+  EXPECT_GE(met, 10);
+}
+
+TEST(Field, EllipsoidIsNearlyADistance) {
+  const Eigen::Vector3d centre(3, -2, 5), radii(30, 20, 10);
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k);
+    EXPECT_NEAR(Ellipsoid(centre + radii[k] * axis, centre, radii), 0, 1e-12);
+    EXPECT_NEAR(Ellipsoid(centre + (radii[k] + 1) * axis, centre, radii), 1, 0.01);
+    EXPECT_NEAR(Ellipsoid(centre + (radii[k] - 1) * axis, centre, radii), -1, 0.01);
+  }
+  EXPECT_LT(Ellipsoid(centre, centre, radii), -5) << "and finite in the middle";
+}
+
 TEST(Tube, MirrorImageFacesOutwards) {
   const auto section = [](double, const Eigen::Vector3d&) { return TubeSection{5, 3, Eigen::Vector3d::UnitY()}; };
-  const Mesh mesh = Mirrored(Tube({{10, 0, 0}, {50, 8, 0}, {80, 30, 5}}, section, 2));
+  const Mesh mesh = Mirrored(Tube({.through = {{10, 0, 0}, {50, 8, 0}, {80, 30, 5}}, .section = section}, 2));
   EXPECT_GT(SignedVolume(mesh.vertices, mesh.triangles), 0);
   EXPECT_TRUE(AnalyseTopology(mesh).watertight());
   EXPECT_LT(mesh.vertices.row(0).maxCoeff(), 0);

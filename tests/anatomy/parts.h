@@ -53,7 +53,17 @@ inline std::vector<v1::Anatomy> Bones() {
     for (int i = 1; i <= 10; ++i) parts.push_back(Part(v1::STRUCTURE_COSTAL_CARTILAGE, i, side));
   }
   for (int i = 1; i <= 15; ++i) parts.push_back(Part(v1::STRUCTURE_VERTEBRA, i));
+  for (int i = 1; i <= 14; ++i) parts.push_back(Part(v1::STRUCTURE_DISC, i));
   return parts;
+}
+
+// What lies between the lungs, and what lies below the diaphragm.
+inline std::vector<v1::Anatomy> Mediastinum() {
+  return {Part(v1::STRUCTURE_HEART),        Part(v1::STRUCTURE_AORTA),      Part(v1::STRUCTURE_VENA_CAVA, 1),
+          Part(v1::STRUCTURE_VENA_CAVA, 2), Part(v1::STRUCTURE_OESOPHAGUS), Part(v1::STRUCTURE_TRACHEA)};
+}
+inline std::vector<v1::Anatomy> AbdominalOrgans() {
+  return {Part(v1::STRUCTURE_LIVER), Part(v1::STRUCTURE_STOMACH), Part(v1::STRUCTURE_SPLEEN)};
 }
 
 inline std::vector<v1::Anatomy> AllParts() {
@@ -61,6 +71,8 @@ inline std::vector<v1::Anatomy> AllParts() {
   parts.push_back(Part(v1::STRUCTURE_DIAPHRAGM));
   parts.push_back(Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_RIGHT));
   parts.push_back(Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_LEFT));
+  for (const v1::Anatomy& organ : Mediastinum()) parts.push_back(organ);
+  for (const v1::Anatomy& organ : AbdominalOrgans()) parts.push_back(organ);
   return parts;
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/mesh/self_crossings.h"
 #include "server/mesh/topology.h"
 
 namespace phrenic::anatomy {
@@ -32,6 +33,13 @@ TEST(Parts, SurfacesAreClosedOutwardAndConnected) {
   for (const v1::Anatomy& part : AllParts()) ExpectValidSurface(part, 0);
 }
 
+TEST(Parts, SurfacesDoNotCrossThemselves) {
+  constexpr double kCell = 6e-3;  // about the longest edge [m]
+  for (const v1::Anatomy& part : AllParts()) {
+    EXPECT_EQ(SelfCrossings(MeshOf(part), kCell), 0) << part.ShortDebugString();
+  }
+}
+
 TEST(Parts, StayClosedAtCoarseResolutions) {
   for (const double resolution_mm : {7.0, 12.0, 20.0}) {
     for (const v1::Anatomy& part : AllParts()) ExpectValidSurface(part, resolution_mm);
@@ -49,6 +57,10 @@ TEST(Parts, DefaultResolutionsSuitStreaming) {
   Eigen::Index bones = 0;
   for (const v1::Anatomy& part : Bones()) bones += MeshOf(part).vertices.cols();
   EXPECT_LT(bones, 60000);
+  Eigen::Index organs = 0;
+  for (const v1::Anatomy& part : Mediastinum()) organs += MeshOf(part).vertices.cols();
+  for (const v1::Anatomy& part : AbdominalOrgans()) organs += MeshOf(part).vertices.cols();
+  EXPECT_LT(organs, 20000);
   for (const v1::Side side : {v1::SIDE_LEFT, v1::SIDE_RIGHT}) {
     const Eigen::Index lung = MeshOf(Part(v1::STRUCTURE_LUNG, 0, side)).vertices.cols();
     EXPECT_GT(lung, 3000);
@@ -76,8 +88,9 @@ TEST(Parts, VerticesAreEstimatedWithoutGenerating) {
 }
 
 TEST(Parts, SameArgumentsGiveTheSameBits) {
-  for (const v1::Anatomy& part : {Part(v1::STRUCTURE_DIAPHRAGM), Part(v1::STRUCTURE_RIB, 3, v1::SIDE_LEFT),
-                                  Part(v1::STRUCTURE_VERTEBRA, 9), Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_LEFT)}) {
+  for (const v1::Anatomy& part :
+       {Part(v1::STRUCTURE_DIAPHRAGM), Part(v1::STRUCTURE_RIB, 3, v1::SIDE_LEFT), Part(v1::STRUCTURE_VERTEBRA, 9),
+        Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_LEFT), Part(v1::STRUCTURE_LIVER)}) {
     const auto first = Generate(part, 6), second = Generate(part, 6);
     ASSERT_TRUE(first.ok() && second.ok());
     EXPECT_EQ(first->vertices, second->vertices);
@@ -102,6 +115,8 @@ TEST(Parts, UnknownPartsAreRejectedByField) {
   ExpectRejected(Part(v1::STRUCTURE_COSTAL_CARTILAGE, 2), 0, "anatomy.side");
   ExpectRejected(Part(v1::STRUCTURE_VERTEBRA, 16), 0, "anatomy.number");
   ExpectRejected(Part(v1::STRUCTURE_LUNG), 0, "anatomy.side");
+  ExpectRejected(Part(v1::STRUCTURE_DISC, 15), 0, "anatomy.number");
+  ExpectRejected(Part(v1::STRUCTURE_VENA_CAVA), 0, "anatomy.number");
 }
 
 TEST(Parts, ResolutionOutOfRangeIsRejected) {

@@ -119,6 +119,16 @@ TEST(Thorax, CartilagesJoinRibAndSternumOrTheCartilageAbove) {
   }
 }
 
+TEST(Thorax, CartilagesContinueRibsWithoutAStep) {
+  for (int i = 1; i <= 10; ++i) {
+    const NearestSearch rib(Rib(i, v1::SIDE_LEFT).vertices);
+    const Mesh cartilage = MeshOf(Part(v1::STRUCTURE_COSTAL_CARTILAGE, i, v1::SIDE_LEFT));
+    int met = 0;
+    for (const auto& x : cartilage.vertices.colwise()) met += rib.Nearest(x).distance < 0.1 * kMillimetre ? 1 : 0;
+    EXPECT_GE(met, 10) << "a ring of vertices, cartilage " << i;
+  }
+}
+
 TEST(Thorax, LungsLieAboveTheDomesAndLeaveTheRecessEmpty) {
   const Mesh diaphragm = Diaphragm();
   const Points normals = VertexNormals(diaphragm.vertices, diaphragm.triangles);

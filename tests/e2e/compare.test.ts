@@ -166,7 +166,7 @@ describe("the thorax compared with its diaphragm, its left side higher", () => {
     expect(await measure("mean_a_to_b")).toBeLessThan(5);
     await viewer.page.waitForTimeout(4000);
     await viewer.saveScreenshot("compare-thorax");
-    for (const name of ["Ribs", "Sternum", "Costal cartilages", "Lungs"]) {
+    for (const name of ["Ribs", "Sternum", "Costal cartilages", "Lungs", "Heart"]) {
       const box = viewer.page.locator(".layer-name", { hasText: name }).locator("input");
       if ((await box.count()) === 1) await box.uncheck();
     }

@@ -6,6 +6,7 @@ import { outFolder, Server } from "./server";
 
 const web = join(import.meta.dirname, "../../web");
 const rest = join(outFolder, "rest.msh");
+const mediastinum = ["Heart", "Aorta", "Caval veins", "Windpipe and bronchi", "Gullet"];
 
 // Not tests: `npm run screenshot` takes the screenshots of the README, during inspiration.
 test("Screenshot", { timeout: 300_000 }, async () => {
@@ -33,7 +34,7 @@ test("Screenshot", { timeout: 300_000 }, async () => {
     // The same state compared with the diaphragm at rest.
     await page.setInputFiles("#compare-file", rest);
     await page.waitForSelector("#comparison .result:not([hidden])");
-    for (const layer of ["Ribs", "Sternum", "Costal cartilages", "Lungs"])
+    for (const layer of ["Ribs", "Sternum", "Costal cartilages", "Lungs", ...mediastinum])
       await page.uncheck(`[aria-label="Show ${layer}"]`);
     await page.mouse.move(0, 0);
     await page.waitForTimeout(4000);
@@ -53,7 +54,8 @@ test("Screenshot", { timeout: 300_000 }, async () => {
       await viewer.waitForTick(before);
     }
     await page.selectOption("#coloring-kind", "displacement");
-    for (const layer of ["Ribs", "Sternum", "Costal cartilages"]) await page.uncheck(`[aria-label="Show ${layer}"]`);
+    for (const layer of ["Ribs", "Sternum", "Costal cartilages", ...mediastinum])
+      await page.uncheck(`[aria-label="Show ${layer}"]`);
     await page.mouse.move(0, 0);
     await page.waitForTimeout(4000);
     await page.screenshot({ path: join(web, "paralysis.jpg"), type: "jpeg", quality: 85 });

@@ -110,7 +110,7 @@ TEST_F(DerivedBodies, CageIsInsideOfTheBonesAndTheSheetInsideOfTheCage) {
   }
   const std::vector<double> off = SortedDistances(apposed, truth);
   std::printf("inner cage: %.2f mm, 95 %% %.2f\n", MeanOf(off), off[off.size() * 95 / 100]);
-  EXPECT_LT(MeanOf(off), 4);
+  EXPECT_LT(MeanOf(off), 5);  // the wall is as far inside of the ribs
   const TriangleTree tree(cage_.vertices, cage_.triangles);
   TriangleTree::Boxes boxes;
   tree.Fit(cage_.vertices, boxes);

@@ -51,7 +51,8 @@ TEST(BodyNames, UnknownOnesAreRefusedWithThoseThereAre) {
             "bodies[0]: there is no body or layer \"layer:bare\"; there are bones, lung, bare");
   EXPECT_EQ(RefusalOfName("structure:ribs"),
             "bodies[0]: there is no structure \"ribs\"; there are diaphragm, rib, costal_cartilage, manubrium, "
-            "sternum_body, xiphoid, vertebra, lung, inner_cage");
+            "sternum_body, xiphoid, vertebra, lung, inner_cage, disc, heart, aorta, vena_cava, oesophagus, trachea, "
+            "liver, stomach, spleen");
 }
 
 TEST(BodyNames, EmptySetsAreRefused) {

@@ -7,6 +7,7 @@
 #include "absl/strings/str_format.h"
 #include "server/mechanics/skinning/inverse_distance_weights.h"
 #include "server/mechanics/skinning/sheet_skin.h"
+#include "server/mechanics/skinning/smooth_weights.h"
 #include "server/mechanics/skinning/triangle_skin.h"
 #include "server/mesh/locality.h"
 #include "server/mesh/units.h"
@@ -57,6 +58,20 @@ void SkinAllByDistance(const std::vector<int>& bodies, const std::vector<int>& d
     vertices += builder.model.bodies[b].mesh.vertices.cols();
   }
   builder.ReportElement("seen", name, vertices, "vertices", "computed per frame, not per step");
+}
+
+void SkinAllSmoothly(const std::vector<int>& bodies, const std::vector<int>& drivers, const std::string& name,
+                     ModelBuilder& builder) {
+  const SmoothWeights smooth(builder, drivers);
+  std::int64_t vertices = 0;
+  for (const int b : bodies) {
+    const Points& rest = builder.model.bodies[b].mesh.vertices;
+    std::vector<SkinWeight> weights;
+    for (int i = 0; i < rest.cols() && !builder.stop.Stopped(); ++i) smooth.Append(rest.col(i), i, weights);
+    AddSkin({.body = b, .weights = std::move(weights), .triangles = {}, .sheet = nullptr}, builder);
+    vertices += rest.cols();
+  }
+  builder.ReportElement("seen", name, vertices, "vertices", "by smooth weights, computed per frame, not per step");
 }
 
 absl::Status BindAllToTriangles(const std::vector<int>& bodies, const std::vector<int>& drivers,
@@ -111,7 +126,11 @@ absl::Status AddSkins(const v1::Skin& scene, const std::string& given, std::stri
     return BindAllToTriangles(*bodies, *drivers, name, drivers_field, builder);
   if (scene.mode() == v1::SKIN_MODE_SHEET)
     return BindAllToSheet(*bodies, *drivers, scene.thickness(), name, std::string(path), builder);
-  SkinAllByDistance(*bodies, *drivers, name, builder);
+  if (scene.mode() == v1::SKIN_MODE_SMOOTH) {
+    SkinAllSmoothly(*bodies, *drivers, name, builder);
+  } else {
+    SkinAllByDistance(*bodies, *drivers, name, builder);
+  }
   return absl::OkStatus();
 }
 

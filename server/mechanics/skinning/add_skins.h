@@ -1,7 +1,7 @@
 // Makes the skins of bodies that are only seen (thesis section 6.1.3), such as cartilages between ribs and sternum, and
-// lungs between ribs and diaphragm. Each vertex gets weights by inverse distance at rest (inverse_distance_weights.h),
-// or a binding to its nearest triangle (triangle_skin.h) or to a sheet (sheet_skin.h). Skins are evaluated per frame,
-// not per step.
+// lungs between ribs and diaphragm. Each vertex gets weights by inverse distance at rest (inverse_distance_weights.h)
+// or without jumps (smooth_weights.h), or a binding to its nearest triangle (triangle_skin.h) or to a sheet
+// (sheet_skin.h). Skins are evaluated per frame, not per step.
 #ifndef PHRENIC_SERVER_MECHANICS_SKINNING_ADD_SKINS_H_
 #define PHRENIC_SERVER_MECHANICS_SKINNING_ADD_SKINS_H_
 

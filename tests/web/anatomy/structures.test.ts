@@ -35,6 +35,10 @@ const names = [
   ...["manubrium", "sternum-body", "xiphoid", "lung-right", "lung-left", "diaphragm-middle", "chest-wall"],
   ...numbered(12, (i) => `t${i}`),
   ...numbered(5, (i) => `l${i}`),
+  ...numbered(12, (i) => `disc-t${i}`),
+  ...numbered(5, (i) => `disc-l${i}`),
+  ...["heart", "aorta", "superior-vena-cava", "inferior-vena-cava", "trachea", "oesophagus"],
+  ...["liver", "stomach", "spleen"],
 ];
 /** Vertices of a diaphragm: right and left dome, right and left crus, and two of the central tendon. */
 const diaphragm = [-0.08, 0, 0.2, 0.08, 0, 0.2, -0.01, 0, 0.03, 0.01, 0, 0.03, -0.02, 0, 0.21, 0.02, 0, 0.21];

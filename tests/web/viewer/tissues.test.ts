@@ -10,8 +10,16 @@ describe("the tissue of a body", () => {
     ["spine", "t10", "bone"],
     ["lungs", "lung-right", "lung"],
     ["lungs", "lung-upper-left", "lung"],
+    ["discs", "disc-t4", "cartilage"],
+    ["liver", "liver", "organ"],
+    ["caval-veins", "inferior-vena-cava", "vessel"],
     ["cube", "cube", "other"],
   ])("OfLayer %s AndName %s Is %s", (layer, name, kind) => expect(tissueKind({ layer, name })).toBe(kind));
+
+  test("IsSolidInAnOrganAndHollowInAVessel", () => {
+    expect(tissueOf({ layer: "heart", name: "heart" }).section).toBeDefined();
+    expect(tissueOf({ layer: "aorta", name: "aorta" }).section).toBeUndefined();
+  });
 
   test("OfBoneIsMattAndThatOfMuscleHasASheen", () => {
     const [bone, muscle] = [tissueOf({ layer: "ribs", name: "rib" }), tissueOf({ layer: "diaphragm", name: "d" })];

@@ -27,8 +27,10 @@ const kinds = {
     spots: 0.05,
     spotSize: 0.004,
     scatter: 0.05,
-    section: "#9fb0ba",
+    section: "#aab5ae",
   },
+  organ: { roughness: 0.55, sheen: 0.12, fibres: 0, spots: 0.12, spotSize: 0.008, scatter: 0.1, section: "#63332a" },
+  vessel: { roughness: 0.5, sheen: 0.1, fibres: 0, spots: 0.05, spotSize: 0.008, scatter: 0.1 },
   lung: { roughness: 0.8, sheen: 0.1, fibres: 0, spots: 0.2, spotSize: 0.006, scatter: 0.4 },
   other: { roughness: 0.6, sheen: 0.05, fibres: 0, spots: 0, spotSize: 1, scatter: 0 },
 } satisfies Record<string, Tissue>;
@@ -37,7 +39,9 @@ const kinds = {
 export type TissueKind = keyof typeof kinds;
 
 const patterns: [RegExp, TissueKind][] = [
-  [/cartilage/, "cartilage"],
+  [/cartilage|^disc/, "cartilage"],
+  [/^(heart|liver|spleen)/, "organ"],
+  [/aorta|cava|oesophagus|airways|stomach/, "vessel"],
   [/diaphragm|muscle|intercostal/, "muscle"],
   [/rib|sternum|manubrium|xiphoid|spine|vertebra|bone/, "bone"],
   [/lung|lobe/, "lung"],
