@@ -202,11 +202,12 @@ TEST(LawsOfABreath, FinerMeshesBreatheAlike) {
 }
 
 // The person in the mirror, with the other nerve cut, moves as the mirror image. A triangle across the midline belongs
-// to one side, in the mirror to the other: with one nerve cut, that row of triangles differs.
+// to one side, in the mirror to the other: with one nerve cut, that row of triangles differs. The tendon's links are
+// restored one after the other, in an order that the mirror does not turn round.
 TEST(LawsOfABreath, TheMirrorImageBreathesAsTheMirrorImage) {
   const auto model = CompileThorax(8, false), image = CompileThorax(8, true);
   const Eigen::Index vertices = model->rest.cols() - 1;
-  for (const auto& [preset, most] : {std::pair("quiet", 1e-3), std::pair("palsy-right", 1e-2)}) {
+  for (const auto& [preset, most] : {std::pair("quiet", 5e-3), std::pair("palsy-right", 1e-2)}) {
     const v1::Parameters parameters = Preset(*model, preset);
     v1::Parameters swapped = parameters;
     swapped.set_left_activation(parameters.right_activation());

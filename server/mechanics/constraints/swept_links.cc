@@ -12,7 +12,7 @@
 namespace phrenic {
 namespace {
 
-constexpr double kRelaxation = 1.4;  // successive over-relaxation: errors over many links leave sooner
+constexpr double kRelaxation = 1.1;  // successive over-relaxation: errors over many links leave sooner
 constexpr double kTolerated = 0.05;  // of the longest link: more is no longer what sweeps leave
 
 // Returns the links by colour: links of one colour have no common movable vertex. Each takes the first colour that is

@@ -1,7 +1,7 @@
 // Distance constraints that share vertices, restored one after the other: a fixed number of Gauss-Seidel sweeps a step
 // over links of constant length (sign 0) or limits of it (sign 1, -1).
 //
-// A sweep restores each link as Restore in link.h does, but 1.4 times as far (successive over-relaxation): along its
+// A sweep restores each link as Restore in link.h does, but 1.1 times as far (successive over-relaxation): along its
 // direction at the start of the step, distributed by inverse mass, velocities changed by the displacement over dt, so
 // that momentum and angular momentum are conserved whatever the number of sweeps. Limits are restored only where they
 // are violated. Links without common movable vertices have one colour and are restored eight at a time (LinkPacket);

@@ -52,7 +52,8 @@ export class Readout {
 /** Returns the largest constraint violation [m] as text; "kept" below a micrometre. */
 export function residualLabel(metres: number | undefined): string {
   if (metres === undefined) return "";
-  return metres < 1e-6 ? "kept" : `${(1000 * metres).toPrecision(2)} mm off`;
+  if (metres < 1e-6) return "kept";
+  return `${(1000 * metres).toPrecision(2)} mm ${metres < 1e-4 ? "at most" : "off"}`;
 }
 
 const fields: [string, string][] = [
@@ -60,5 +61,5 @@ const fields: [string, string][] = [
   ["tick", "Steps since the start"],
   ["breath", "Inspiration or expiration, and the phase of the breath"],
   ["pace", "Simulated seconds per second"],
-  ["links", "Largest violation of a rigid link or limit; kept: below 1 µm"],
+  ["links", "Largest violation of a rigid link or limit; kept: below 1 µm; off: above 0.1 mm"],
 ];
