@@ -111,7 +111,8 @@ TEST(ErrorStudy, RefinesTheStepForAReferenceWithLimits) {
   v1::CreateStudyRequest request = ErrorRequest(1, 4);
   request.mutable_error()->set_tolerance(1e-6);
   request.mutable_error()->add_integrators(v1::INTEGRATOR_SEMI_IMPLICIT_EULER);
-  const std::string limits = "constraints { length_limits { body: 'b' list { links { a: 0 b: 2 } } at_most_ratio: 1 } }";
+  const std::string limits =
+      "constraints { length_limits { body: 'b' list { links { a: 0 b: 2 } } at_most_ratio: 1 } }";
   const auto result = RunOn(kSwing + limits, request);
   ASSERT_TRUE(result.ok()) << result.status();
   const v1::Reference& reference = result->error().reference();
