@@ -12,8 +12,8 @@ namespace phrenic::study {
 namespace {
 
 constexpr double kFirstFraction = 0.25;  // of the largest stable step
-constexpr double kMostCpu = 200;         // of one run [s]
-constexpr int kMostRuns = 14;
+constexpr double kMostCpuOfRun = 200;    // of one run [s]
+constexpr int kMostRefinements = 14;
 
 // Returns the step of the first run [s].
 double FirstReferenceStep(const Subject& subject) {
@@ -44,11 +44,12 @@ absl::StatusOr<Trajectory> RefinedReference(const Subject& studied, const std::v
   report.set_tolerance_m(tolerance);
   double step = FirstReferenceStep(subject), cpu_s = 0;
   Trajectory last;
-  for (int run = 0; run < kMostRuns && 2 * last.cpu_s < kMostCpu; ++run, step /= 2) {
+  for (int run = 0; run < kMostRefinements && 2 * last.cpu_s < kMostCpuOfRun; ++run, step /= 2) {
     const auto labelled = [&](double done, std::string_view) {
-      return progress((run + done) / kMostRuns, absl::StrFormat("reference: velocity Verlet at %.3g ms", 1e3 * step));
+      return progress((run + done) / kMostRefinements,
+                      absl::StrFormat("reference: velocity Verlet at %.3g ms", 1e3 * step));
     };
-    auto finer = Simulate(subject, moments, step, kMostCpu, labelled);
+    auto finer = Simulate(subject, moments, step, kMostCpuOfRun, labelled);
     if (!finer.ok()) return finer.status();
     cpu_s += finer->cpu_s;
     if (!finer->problem.empty()) break;

@@ -55,8 +55,15 @@ test("BothViewsBreatheInStepPauseTogetherAndShareColours", async () => {
   await page.locator("#view-headers").getByText("Deep breath").waitFor();
   const start = await viewer.tick();
   await viewer.waitForTick(start + 400);
+  // Software rendering draws two thoraxes a few times a second: the views may show frames that follow each other.
   const [here, there] = await times(viewer);
-  expect(Math.abs(here - there)).toBeLessThan(0.1);
+  expect(Math.abs(here - there)).toBeLessThan(0.5);
+  await page.waitForFunction(() => {
+    const [first, second] = [...document.querySelectorAll(".view-header .time")].map((each) =>
+      Number.parseFloat(each.textContent!),
+    );
+    return Math.abs(first - second) < 0.1;
+  });
   await page.click('#play[aria-label="Pause"]');
   await page.waitForSelector('#play[aria-label="Play"]');
   await page.waitForFunction(() => {

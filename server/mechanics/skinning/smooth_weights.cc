@@ -12,7 +12,7 @@ namespace {
 constexpr double kSmoothing = 8e-3;              // n [m]
 constexpr double kUpright = 0.35;                // factor of vertical distances
 constexpr double kSteep = 0.008;                 // of a vertical surface, relative to a level one
-constexpr double kReach = 6;                     // S / s_min
+constexpr double kSmoothReach = 6;               // S / s_min
 constexpr size_t kMostCarriers = 6000;           // bounds the time to order them, which grows with the square
 constexpr double kSmallestShare = 0.01;          // relative to the largest; smaller shares are dropped
 constexpr double kFew = 1. / 5, kMany = 1. / 3;  // of sqrt(S): vertices less than the first apart are not used
@@ -95,7 +95,7 @@ std::vector<SmoothWeights::Share> SmoothWeights::Shares(const Eigen::Vector3d& p
 
 void SmoothWeights::AppendCarriers(const Eigen::Vector3d& scaled, double smallest, double share, int for_vertex,
                                    std::vector<SkinWeight>& weights) const {
-  const double at_reach = kReach * smallest, reach = std::sqrt(at_reach);
+  const double at_reach = kSmoothReach * smallest, reach = std::sqrt(at_reach);
   const size_t first = weights.size();
   double sum = 0;
   for (const Carrier& carrier : carriers_) {

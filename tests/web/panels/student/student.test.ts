@@ -12,6 +12,7 @@ import { compareButton } from "../../../../web/src/panels/student/compare_button
 import { LessonCard } from "../../../../web/src/panels/student/lesson_card";
 import { LessonMaker } from "../../../../web/src/panels/student/lesson_maker";
 import { sliders } from "../../../../web/src/panels/student/sliders";
+import { fullActivations } from "../../../../web/src/parameters/effort";
 import { fetchJson } from "../../../../web/src/session/lessons";
 import { OwnLessons } from "../../../../web/src/session/own_lessons";
 import { SessionController } from "../../../../web/src/session/session_controller";
@@ -80,7 +81,9 @@ test("TheSlidersSetBothMusclesTheRateAndTheShare", async () => {
   await settle();
   const { diaphragmActivation, intercostalActivation } = server.updates[0] as typeof quiet;
   expect(diaphragmActivation! / intercostalActivation!).toBeCloseTo(0.06061 / 0.12, 3);
-  expect(diaphragmActivation! / 0.6 + intercostalActivation! / 1.62).toBeCloseTo(2, 3);
+  expect(
+    diaphragmActivation! / fullActivations.diaphragm + intercostalActivation! / fullActivations.intercostal,
+  ).toBeCloseTo(2, 3);
   expect(Object.keys(server.updates[0])).not.toContain("breathLength");
 });
 
