@@ -20,7 +20,7 @@ TEST(Presets, AreOverriddenBySet) {
                                 "breath_length=7", "-o", "json"});
   ASSERT_EQ(both.code, 0) << both.err;
   EXPECT_EQ(both.json()["session"]["parameters"]["breath_length"], 7);
-  EXPECT_GT(both.json()["session"]["parameters"]["diaphragm_activation"], 0.5);
+  EXPECT_GT(both.json()["session"]["parameters"]["diaphragm_activation"], 0.4);
 }
 
 TEST(Presets, UnknownOnesAreRejectedWithTheKnownOnes) {
