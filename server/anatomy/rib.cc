@@ -107,7 +107,7 @@ Eigen::Vector3d ThinAxis(int number, double past_tubercle, const Eigen::Vector3d
   const Eigen::Vector3d out = OutOfCage(centre);
   const Eigen::Vector3d level = Eigen::Vector3d(out.x(), out.y(), 0).normalized();
   const double flat = std::max(0.0, 80 - 32.0 * (number - 1)) * kRadian;
-  const Eigen::Vector3d first = std::cos(flat) * level + std::sin(flat) * Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d first = std::cos(flat) * level + std::sin(flat) * Eigen::Vector3d::UnitZ();
   if (number == 1) return first;
   return first + (out - first) * Smooth(past_tubercle / 60) * std::min(1.0, (number - 1) / 2.0);
 }
