@@ -333,7 +333,7 @@ grpc::Status SessionService::ListAnswers(grpc::CallbackServerContext* context, c
 
 grpc::Status SessionService::DeleteAnswers(grpc::CallbackServerContext* context,
                                            const v1::DeleteAnswersRequest* request, v1::DeleteAnswersResponse*) {
-  const auto session = AdmitTeacher(*context, *request, false);
+  const auto session = AdmitTeacher(*context, *request, true);
   if (!session.ok()) return ToGrpc(session.status());
   (*session)->answer_book().Clear();
   return grpc::Status::OK;

@@ -178,6 +178,43 @@ TEST_F(BreathingThorax, AParalysedDomeIsDrawnUp) {
   EXPECT_LT(*std::min_element(displaced.begin(), displaced.end()), -0.02 * kLitre);
 }
 
+// The area of the triangles whose corners all have links [m^2].
+double LinkedArea(const Model& model, const Points& x) {
+  std::vector<Link> links;
+  model.constraints.front()->ListLinks(links);
+  std::vector<bool> linked(static_cast<size_t>(x.cols()), false);
+  for (const Link& link : links) linked[static_cast<size_t>(link.a)] = linked[static_cast<size_t>(link.b)] = true;
+  double area = 0;
+  for (const BodyModel& body : model.bodies) {
+    for (const auto corner : body.mesh.triangles.colwise()) {
+      if (body.first_vertex < 0) break;
+      const Eigen::Vector3i at = corner.array() + body.first_vertex;
+      if (!linked[at[0]] || !linked[at[1]] || !linked[at[2]]) continue;
+      const Eigen::Vector3d a = x.col(at[0]), b = x.col(at[1]), c = x.col(at[2]);
+      area += (b - a).cross(c - a).norm() / 2;
+    }
+  }
+  return area;
+}
+
+TEST_F(BreathingThorax, LinksKeepTheTendonsSizeAndWithoutThemTheSniffIsWeaker) {
+  const auto growth = [](bool links) {
+    v1::Parameters parameters = With("deep");
+    parameters.set_apply_links(links);
+    const Curves half = Run(parameters, parameters.breath_length() / 2);
+    return 100 * (LinkedArea(*model_, half.last.x) / LinkedArea(*model_, model_->rest) - 1);
+  };
+  const auto pressure = [](bool links) {
+    return Breathe("sniff", [=](auto& p) { p.set_apply_links(links); }).Range("transdiaphragmatic pressure", 6) / 98.07;
+  };
+  const double held = growth(true), free = growth(false), with = pressure(true), without = pressure(false);
+  std::printf("with and without links: the tendon grows by %.2f, %.1f %%; sniff's Pdi %.0f, %.0f cmH2O\n", held, free,
+              with, without);
+  EXPECT_LT(std::abs(held), 1);
+  EXPECT_GT(free, 3);
+  EXPECT_GT(with, 1.03 * without);
+}
+
 TEST_F(BreathingThorax, TrappedAirFillsTheLungsAndLeavesTheDomesLessToMove) {
   const Curves with = Breathe("copd"), without = Breathe("copd", [](auto&p) { p.set_trapped_air(0); });
   std::printf("COPD with and without trapped air: least volume %.2f, %.2f l; right dome %.1f, %.1f mm\n",

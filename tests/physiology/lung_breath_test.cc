@@ -21,7 +21,7 @@ constexpr size_t kRight = 0, kLeft = 1;
 class LungBreath : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    model_ = CompileShipped("thorax", 10);
+    model_ = CompileShipped("thorax", 6);
     subject_ = *Subject::Of(*model_);
   }
   static void TearDownTestSuite() {
@@ -69,7 +69,7 @@ TEST_F(LungBreath, MovesDownMostAtTheBaseAndTheBack) {
     EXPECT_GT(lung.caudal[physiology::kLungMiddle], lung.caudal[physiology::kLungApex]);
     EXPECT_GT(lung.caudal[physiology::kLungApex], 0);
     EXPECT_GT(lung.back_over_front, 1.3);
-    EXPECT_LT(lung.upwards, 0.15);
+    EXPECT_LT(lung.upwards, 0.1);
   }
 }
 
@@ -78,8 +78,7 @@ TEST_F(LungBreath, IsWhatTheTableMeasures) {
   const physiology::Recording& quiet = Breath("quiet");
   const auto tissue = physiology::ShiftOf(physiology::LoweredInBreath(quiet));
   const auto surfaces = physiology::ShiftOf(physiology::LoweredLungs(*model_, subject_->parts, quiet.base, quiet.peak));
-  EXPECT_GT(tissue.least, -0.001) << "with bodies of 10 mm; with those of the scene nothing rises";
-  EXPECT_GT(tissue.least, surfaces.least + 0.001);
+  EXPECT_GT(tissue.least, 0);
   EXPECT_LT(surfaces.least, 0);
   EXPECT_GT(tissue.base, surfaces.base + 0.001);
 }

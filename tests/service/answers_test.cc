@@ -46,7 +46,7 @@ TEST_F(ClassAnswersTest, APupilAnswersAndOnlyTheTeacherReads) {
   EXPECT_EQ(listed.answers_size(), 0);
 }
 
-TEST_F(ClassAnswersTest, NamesAreForWhoControlsAlone) {
+TEST_F(ClassAnswersTest, NamesAndDeletionAreForWhoControlsAlone) {
   v1::SubmitAnswerResponse submitted;
   ASSERT_TRUE(
       Call(*sessions_, &Sessions::SubmitAnswer, absl::StrCat("session_id: 'class' ", kAnswer), &submitted).ok());
@@ -57,6 +57,12 @@ TEST_F(ClassAnswersTest, NamesAreForWhoControlsAlone) {
   const auto refused = Call(*sessions_, &Sessions::ListAnswers, "session_id: 'class' include_names: true", &listed);
   EXPECT_EQ(refused.error_code(), grpc::PERMISSION_DENIED);
   EXPECT_THAT(refused.error_message(), HasSubstr("take control first"));
+  v1::DeleteAnswersResponse deleted;
+  EXPECT_EQ(Call(*sessions_, &Sessions::DeleteAnswers, "session_id: 'class'", &deleted).error_code(),
+            grpc::PERMISSION_DENIED)
+      << "a pupil could delete the class's answers";
+  ASSERT_TRUE(Call(*sessions_, &Sessions::ListAnswers, "session_id: 'class'", &listed).ok());
+  EXPECT_EQ(listed.answers_size(), 1);
 }
 
 TEST_F(ClassAnswersTest, ErrorsNameTheFieldOrTheSession) {

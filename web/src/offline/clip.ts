@@ -27,7 +27,7 @@ function bytesOf(text: string): Uint8Array {
   }
 }
 
-/** The bodies and frames of a motion, which is played again and again. */
+/** The bodies and frames of a motion, which is played in a loop. */
 export class Clip {
   readonly bodies: Body[];
   /** Times of the frames from the first one on [s], ascending. */

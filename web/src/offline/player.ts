@@ -1,6 +1,6 @@
 import { Signal } from "../state/signal";
 
-/** Plays a span of time again and again. */
+/** Plays a span of time in a loop. */
 export class Player {
   /** The displayed time, from 0 to the length [s]. */
   readonly time = new Signal(0);

@@ -125,7 +125,7 @@ export class LessonCard {
     test.querySelector<HTMLElement>("h3")?.focus();
   }
 
-  /** The end of a lesson: the same questions once more, if they were asked before. */
+  /** The end of a lesson: the test after it, if there was one before. */
   private finish(): void {
     const { before } = this;
     if (before === undefined) return this.leave();

@@ -19,7 +19,7 @@ export function questionForm(question: Question, answered: (answer: GivenAnswer)
     result.textContent =
       answer === undefined
         ? "Choose an answer first."
-        : `${answer.right ? "Right." : "Not yet."} ${answer.right ? question.explanation : "Look again and try once more."}`;
+        : `${answer.right ? "Right." : "Not yet."} ${answer.right ? question.explanation : "Try again."}`;
     result.dataset.right = String(answer?.right === true);
     if (answer !== undefined) answered(answer);
   };
