@@ -19,6 +19,6 @@ export function stageInsets(): Insets {
   stage.style.setProperty("--heads", `${heads}px`);
   // A short bar lies beside the narrow top of the scene.
   const bar = elementById("views");
-  const top = bar.offsetLeft + bar.offsetWidth < 0.45 * width ? 14 : 48;
+  const top = bar.offsetLeft + bar.offsetWidth < 0.45 * width ? 14 : bar.offsetTop + bar.offsetHeight + 4;
   return { left, top: top + heads, bottom };
 }
