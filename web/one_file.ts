@@ -2,11 +2,11 @@ import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";
 import type { Plugin, UserConfig } from "vite";
 
-// Allows only this page's script; plots need inline styles.
-const policy = (hash: string) =>
+// Allows only this page's script, with or without WebAssembly in it; plots need inline styles.
+const policyOf = (webAssembly: boolean) => (hash: string) =>
   [
     "default-src 'none'",
-    `script-src 'sha256-${hash}'`,
+    `script-src 'sha256-${hash}'${webAssembly ? " 'wasm-unsafe-eval'" : ""}`,
     "style-src 'unsafe-inline'",
     "img-src data: blob:",
     "base-uri 'none'",
@@ -16,7 +16,7 @@ const policy = (hash: string) =>
 const iconUrl = `data:image/svg+xml;base64,${readFileSync(new URL("public/icon.svg", import.meta.url), "base64")}`;
 
 /** Inlines the script, the styles and the icon, so that the page is a single file. `place` is where its data goes. */
-function oneFile(name: string, place: string): Plugin {
+function oneFile(name: string, place: string, policy: (hash: string) => string): Plugin {
   return {
     name: "one-file",
     apply: "build",
@@ -48,10 +48,10 @@ function oneFile(name: string, place: string): Plugin {
 }
 
 /** Returns the configuration that builds a page as one file of dist/, beside the viewer. */
-export function oneFilePage(name: string, place: string): UserConfig {
+export function oneFilePage(name: string, place: string, webAssembly = false): UserConfig {
   return {
     base: "./",
-    plugins: [oneFile(name, place)],
+    plugins: [oneFile(name, place, policyOf(webAssembly))],
     build: {
       target: "es2022",
       modulePreload: false,

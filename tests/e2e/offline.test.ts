@@ -4,7 +4,7 @@ import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { endAll, startAll, ViewerPage } from "./browser";
+import { endAll, isComplaint, startAll, ViewerPage } from "./browser";
 import { changedFraction } from "./pixels";
 import { outFolder, type Server } from "./server";
 
@@ -37,7 +37,7 @@ async function open() {
   });
   const page = await context.newPage();
   const [complaints, requests]: string[][] = [[], []];
-  page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
+  page.on("console", (message) => isComplaint(message) && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(String(error)));
   page.on("request", (request) => requests.push(request.url()));
   const url = pathToFileURL(path).href;

@@ -184,6 +184,7 @@ export class App {
       },
       insets: stageInsets,
       reducedMotion: () => reduced.matches,
+      simplifier: () => import("../geometry/simplified"),
     };
   }
 

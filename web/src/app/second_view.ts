@@ -31,7 +31,7 @@ export interface PrimaryView {
   layerStyles: LayerStyles;
   controller: SessionController;
   presets: Signal<Preset[]>;
-  host: Pick<ViewerHost, "insets" | "reducedMotion">;
+  host: Pick<ViewerHost, "insets" | "reducedMotion" | "simplifier">;
   /** True if this viewer may play and pause the session. */
   mayChange(): boolean;
   /** Called with every frame of the second session. */

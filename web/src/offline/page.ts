@@ -11,6 +11,7 @@ import { layersPanel } from "../panels/view/layers_panel";
 import { Margins } from "../panels/view/margins";
 import { OrientationCube } from "../panels/view/orientation_cube";
 import { viewBar } from "../panels/view/view_bar";
+import * as simplifier from "../geometry/simplified";
 import { Signal } from "../state/signal";
 import type { Cut } from "../viewer/clipping";
 import { viewNames } from "../viewer/named_views";
@@ -69,6 +70,7 @@ export class MotionPage {
       },
       insets: stageInsets,
       reducedMotion: () => reduced.matches,
+      simplifier: () => Promise.resolve(simplifier),
     };
   }
 

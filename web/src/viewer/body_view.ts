@@ -3,6 +3,7 @@ import { Placement } from "../gen/phrenic/v1/frames_pb";
 import { type Body, floatsPerPose, type FrameArrays, positionsOf } from "../geometry/bodies";
 import { edgesOf } from "../geometry/edges";
 import { computeNormals } from "../geometry/normals";
+import type { Simplifier } from "../geometry/simplified";
 import { tendonWeights } from "../geometry/tendon";
 import { pointMaterial, setDefine, setOpacity, surfaceMaterial } from "./materials";
 import { addOverlays, type Overlay, type OverlayHost, type OverlayKind } from "./overlays";
@@ -26,6 +27,9 @@ export class BodyView implements OverlayHost {
   private readonly vertexColors: VertexColors | undefined;
   private opacity: number;
   private faded = false;
+  private detailed = true;
+  private allTriangles: THREE.BufferAttribute | undefined;
+  private fewerTriangles: THREE.BufferAttribute | undefined;
   /** Bounding box at rest, in the frame of the body [m]. */
   readonly restBox: THREE.Box3;
   private readonly overlays: Overlay[];
@@ -170,9 +174,20 @@ export class BodyView implements OverlayHost {
     this.mesh?.geometry.setAttribute("occlusion", new THREE.BufferAttribute(covered, 1, true));
   }
 
-  /** Shows or hides details that cost time in each pixel. */
+  /** Lights each pixel; or, for machines where the processor draws, each vertex of fewer triangles if they are known. */
   setDetailed(detailed: boolean): void {
-    if (this.mesh !== undefined) setDefine(this.mesh.material, "DETAILED", detailed);
+    if (this.mesh === undefined) return;
+    this.detailed = detailed;
+    setDefine(this.mesh.material, "DETAILED", detailed);
+    this.allTriangles ??= this.mesh.geometry.index!;
+    this.mesh.geometry.setIndex(detailed ? this.allTriangles : (this.fewerTriangles ?? this.allTriangles));
+  }
+
+  /** Computes the triangles for `setDetailed(false)`, if they are not known yet. */
+  async simplify({ simplified }: Simplifier): Promise<void> {
+    if (this.mesh === undefined || this.fewerTriangles !== undefined) return;
+    this.fewerTriangles = new THREE.BufferAttribute(await simplified(this.body.rest, this.body.triangles), 1);
+    this.setDetailed(this.detailed);
   }
 
   /** Sets whether a plane clips the scene, so that the inside of closed bodies is seen. */

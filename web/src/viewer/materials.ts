@@ -1,8 +1,9 @@
 import * as THREE from "three";
+import { usePlainShading } from "./plain_shader";
 import { addTissue, type TissueUniforms } from "./tissue_shader";
 import type { Tissue } from "./tissues";
 
-/** A lit surface material for a tissue. `moving`: the geometry has its rest positions in the attribute `rest`. */
+/** A lit surface material for a tissue; plain without the define DETAILED. `moving`: the geometry has its rest positions in the attribute `rest`. */
 export function surfaceMaterial(
   color: string,
   opacity: number,
@@ -20,7 +21,9 @@ export function surfaceMaterial(
     polygonOffsetUnits: 1,
     shadowSide: THREE.DoubleSide,
   });
-  material.defines = { ...material.defines, TISSUE: "", DETAILED: "", ...(moving ? { MOVING: "" } : {}) };
+  material.defines = { ...material.defines, DETAILED: "" };
+  if (moving) material.defines.MOVING = "";
+  if (tissue.fibres > 0) material.defines.FIBRES = "";
   const uniforms: TissueUniforms = {
     sheen: { value: tissue.sheen },
     fibres: { value: tissue.fibres },
@@ -30,7 +33,10 @@ export function surfaceMaterial(
     scatter: { value: tissue.scatter },
     section: { value: new THREE.Color(tissue.section ?? color) },
   };
-  material.onBeforeCompile = (shader) => addTissue(shader, uniforms);
+  material.onBeforeCompile = (shader) => {
+    if ("DETAILED" in (material.defines ?? {})) addTissue(shader, uniforms);
+    else usePlainShading(shader, uniforms);
+  };
   setOpacity(material, opacity);
   return material;
 }

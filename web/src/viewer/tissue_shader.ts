@@ -1,4 +1,5 @@
 import type * as THREE from "three";
+import { fibrePattern, noise1 } from "./fibres";
 
 type Shader = THREE.WebGLProgramParametersWithUniforms;
 
@@ -60,7 +61,7 @@ vApart = apart;
   vRest = position;
 #endif`;
 
-// Noise in one dimension with a period, and in three.
+// Noise in three dimensions.
 const fragmentHead = `
 uniform float sheen;
 uniform float fibres;
@@ -72,19 +73,11 @@ uniform vec3 section;
 varying float vOcclusion;
 varying float vApart;
 varying vec3 vRest;
-float hash1(float n) { return fract(sin(n * 12.9898) * 43758.5453); }
+${noise1}
 float hash3(vec3 p) {
   p = fract(p * 0.3183099 + 0.1);
   p *= 17.0;
   return fract(p.x * p.y * p.z * (p.x + p.y + p.z));
-}
-// Value and slope.
-vec2 noise1(float at, float period) {
-  float cell = floor(at);
-  float f = at - cell;
-  float a = hash1(mod(cell, period));
-  float b = hash1(mod(cell + 1.0, period));
-  return vec2(mix(a, b, f * f * (3.0 - 2.0 * f)), (b - a) * 6.0 * f * (1.0 - f));
 }
 float noise3(vec3 at) {
   vec3 cell = floor(at);
@@ -95,29 +88,15 @@ float noise3(vec3 at) {
              mix(mix(hash3(cell + o.xxy), hash3(cell + o.yxy), f.x), mix(hash3(cell + o.xyy), hash3(cell + o.yyy), f.x), f.y), f.z);
 }`;
 
-// Fibres run from the rim to the middle: they are a pattern of the angle around the vertical axis.
 const pattern = `
-#if defined(TISSUE) && !defined(PAINTED)
-  vec2 fibreSlope = vec2(0.0);
-  vec2 fromAxis = vRest.xy - fibreAxis;
-  if (fibres > 0.0) {
-    float turn = atan(fromAxis.y, fromAxis.x) / 6.2831853 + 0.5;
-    float spread = length(fwidth(fromAxis)) / max(length(fromAxis), 1e-4) / 6.2831853;
-    vec2 coarse = noise1(turn * 210.0, 210.0) * (1.0 - smoothstep(0.3, 0.9, spread * 210.0));
-    vec2 fine = noise1(turn * 560.0, 560.0) * (1.0 - smoothstep(0.3, 0.9, spread * 560.0));
-    float bundle = 0.65 * coarse.x + 0.35 * fine.x;
-    diffuseColor.rgb *= 1.0 + 0.45 * fibres * (bundle - 0.4);
-    diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.62, 0.36, 0.29), 0.22 * fibres * smoothstep(0.62, 0.95, bundle));
-    fibreSlope = fibres * (0.65 * coarse.y + 0.35 * fine.y) * vec2(-fromAxis.y, fromAxis.x) / max(length(fromAxis), 1e-4);
-  }
+#ifndef PAINTED
+  ${fibrePattern}
   diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.16, 0.14, 0.15) + 0.1 * diffuseColor.rgb, vApart);
-  #ifdef DETAILED
-    if (spots > 0.0) diffuseColor.rgb *= 1.0 + spots * (2.0 * noise3(vRest * spotsPerMetre) - 1.0);
-  #endif
+  if (spots > 0.0) diffuseColor.rgb *= 1.0 + spots * (2.0 * noise3(vRest * spotsPerMetre) - 1.0);
 #endif`;
 
 const relief = `
-#if defined(TISSUE) && !defined(PAINTED)
+#ifndef PAINTED
   normal = normalize(normal - 0.16 * (viewMatrix * vec4(fibreSlope, 0.0, 0.0)).xyz);
 #endif`;
 

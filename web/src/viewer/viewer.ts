@@ -2,6 +2,7 @@ import * as THREE from "three";
 import type { Body, FrameArrays } from "../geometry/bodies";
 import { computeNormals } from "../geometry/normals";
 import { computeOcclusion } from "../geometry/occlusion";
+import type { Simplifier } from "../geometry/simplified";
 import type { Surface } from "../geometry/surface";
 import { type Marker, type VertexRef } from "../geometry/vertices";
 import { AdaptiveResolution } from "./adaptive_resolution";
@@ -39,6 +40,8 @@ export interface ViewerHost {
   insets(): Insets;
   /** True if the user prefers reduced motion. */
   reducedMotion(): boolean;
+  /** Loads what reduces triangles for plain quality. */
+  simplifier(): Promise<Simplifier>;
 }
 
 /**
@@ -62,6 +65,8 @@ export class Viewer {
   private readonly quality: QualityChooser;
   /** True if the bodies have no ambient occlusion yet. */
   private unshaded = false;
+  /** True if the bodies do not have the triangles of plain quality yet. */
+  private unsimplified = false;
   private cut: Cut = { kind: "none", fraction: 0.5, flipped: false };
   private box = new THREE.Box3();
   private dirty = true;
@@ -113,7 +118,7 @@ export class Viewer {
       view.setDetailed(this.quality.quality !== "plain");
       this.scene.add(view.group);
     }
-    this.unshaded = !diagram;
+    this.unshaded = this.unsimplified = !diagram;
     this.showOverlays(this.overlays);
     const sample = sampleVertices(shownAtFirst(bodies));
     this.box = new THREE.Box3().setFromPoints(sample);
@@ -155,6 +160,14 @@ export class Viewer {
       return { rest, triangles, normals, occludes: opacity === 1 };
     });
     computeOcclusion(surfaces).forEach((covered, i) => solid[i].setOcclusion(covered));
+    this.refresh();
+  }
+
+  /** Computes the triangles of plain quality, after the first drawing, which does not wait for it. */
+  private async simplify(): Promise<void> {
+    this.unsimplified = false;
+    const simplifier = await this.host.simplifier();
+    await Promise.all(this.views.map((view) => view.simplify(simplifier)));
     this.refresh();
   }
 
@@ -337,6 +350,7 @@ export class Viewer {
     this.drawn++;
     if (frame !== undefined && this.firstDrawTime < 0) this.firstDrawTime = performance.now();
     if (frame !== undefined && this.unshaded) this.shade();
+    if (frame !== undefined && this.unsimplified && this.pictureQuality === "plain") void this.simplify();
     this.host.afterDraw(orientation);
   }
 }
