@@ -203,6 +203,9 @@ TEST(MuscleForce, StopsWhereForceLengthVanishesWithoutFolding) {
 
 // Isotonic release: the rate at which a strip shortens under a constant load, against Hill's law with viscosity.
 TEST(MuscleForce, ShortensUnderALoadAtTheRateThatHillSays) {
+#ifdef PHRENIC_SANITIZED
+  GTEST_SKIP() << "the Release build runs it: 0.12 s of simulated time";
+#endif
   constexpr double kTension = 500;
   const auto model = CompileText(MuscleStrip("resting_tension_across: 0 tendon_tension: 0 viscosity: 2", kNarrow));
   ASSERT_NE(model, nullptr);
