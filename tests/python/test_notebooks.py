@@ -17,7 +17,7 @@ import numpy as np
 import phrenic
 from phrenic import notebook
 from phrenic.local import binary
-from support import EXAMPLES, REPOSITORY, SessionTest, program
+from support import EXAMPLES, REPOSITORY, SessionTest
 
 NOTEBOOKS = sorted((EXAMPLES / "notebooks").glob("*.ipynb"))
 ALONE = ["--HTMLExporter.mathjax_url=", "--HTMLExporter.require_js_url="]
@@ -139,8 +139,7 @@ class ExamplesTest(unittest.TestCase):
 
     def page(self, path: Path, folder: str) -> str:
         words = [sys.executable, "-m", "nbconvert", "--to", "html", "--execute", "--output-dir", folder, *ALONE, str(path)]
-        environment = {**os.environ, "PHRENIC": program("phrenic"), "IPYTHONDIR": folder, "JUPYTER_RUNTIME_DIR": folder,
-                       "MPLCONFIGDIR": folder}  # fmt: skip
+        environment = {**os.environ, "IPYTHONDIR": folder, "JUPYTER_RUNTIME_DIR": folder, "MPLCONFIGDIR": folder}
         started = time.monotonic()
         done = subprocess.run(words, capture_output=True, text=True, timeout=120, env=environment, cwd=REPOSITORY)
         self.assertEqual(done.returncode, 0, done.stderr[-3000:])

@@ -12,6 +12,7 @@ from .advance import Steps, frames_ahead
 from .call import T, Operation
 from .connection import Connection
 from .errors import error_of
+from .fits import Fit, Landmarks, fitted
 from .frame import Frame
 from .operations import EVERYTHING, Scene, SessionOperations, create, parts_of, source_of
 from .v1 import session_pb2, state_pb2
@@ -230,6 +231,11 @@ class Session(SessionOperations):
     def physiology(self, presets: Sequence[str] = (), progress: jobs.Progress = None) -> jobs.Physiology:
         """Simulates the scene's breathing presets (a minute a preset) and compares them with published ranges."""
         return self._do(jobs.physiology(self._source, presets, progress))
+
+    def fit(self, landmarks: Landmarks, progress: jobs.Progress = None, **options: Any) -> Fit:
+        """Fits a person's breath to landmarks with the lungs of this session's scene, as phrenic.fit does; the session
+        itself does not move. `options`: modes, split, assimilate, scene_name, show_landmarks."""
+        return self._do(fitted(self._source, landmarks, options, progress))
 
     def compare(self, other: Union["Session", str, Path], body: str = "", **options: Any) -> jobs.Comparison:
         """Compares a body of this session, as it is now, with the same body of another session, or with a surface or
