@@ -210,10 +210,10 @@ class Session(SessionOperations):
         """As phrenic.Session.pause."""
         await self._do(self._pause())
 
-    async def watch(self, max_fps: float = 60) -> AsyncIterator[Frame]:
+    async def watch(self, max_fps: float = 60, max_error_mm: Optional[float] = None) -> AsyncIterator[Frame]:
         """As phrenic.Session.watch."""
         await self._do(self._describe([state_pb2.STATE_PART_BODIES]))
-        events = self._begun().open(self._watch_call(max_fps))
+        events = self._begun().open(self._watch_call(max_fps, max_error_mm))
         try:
             async for event in events:
                 frame = self._noted(event)

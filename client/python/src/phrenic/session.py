@@ -192,11 +192,12 @@ class Session(SessionOperations):
         """Stops a session that runs."""
         self._do(self._pause())
 
-    def watch(self, max_fps: float = 60) -> Iterator[Frame]:
+    def watch(self, max_fps: float = 60, max_error_mm: Optional[float] = None) -> Iterator[Frame]:
         """Yields the newest frame of a session that runs, as a viewer sees it: a slow loop misses frames. Ends by
-        `break`."""
+        `break`. `max_error_mm`: positions may be off by so much [mm] and come compressed, in a tenth of the bytes or less;
+        None: exact. FailedPrecondition if the decoder of compressed frames is not there."""
         self._do(self._describe([state_pb2.STATE_PART_BODIES]))
-        events = self._connection.open(self._watch_call(max_fps))
+        events = self._connection.open(self._watch_call(max_fps, max_error_mm))
         try:
             for event in events:
                 frame = self._noted(event)
