@@ -99,8 +99,10 @@ class Relay:
             self._open.clear()
 
     def stop(self) -> None:
-        self._listener.shutdown(socket.SHUT_RDWR)
-        self._listener.close()
+        """Closes the connections for good. A second call has no effect."""
+        if self._listener.fileno() >= 0:
+            self._listener.shutdown(socket.SHUT_RDWR)
+            self._listener.close()
         self.cut()
 
     def _accept(self) -> None:
