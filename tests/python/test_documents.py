@@ -17,9 +17,9 @@ FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 
 
 class FirstPageTest(unittest.TestCase):
-    def test_the_eight_lines_of_the_first_page_run(self):
+    def test_the_lines_of_the_first_page_run(self):
         (block,) = re.findall(r"^```python\n(.*?)^```", (ROOT / "README.md").read_text(), re.MULTILINE | re.DOTALL)
-        self.assertEqual(len(block.splitlines()), 8)
+        self.assertLessEqual(len(block.splitlines()), 8)
         said = io.StringIO()
         with contextlib.redirect_stdout(said):
             exec(block.replace("seconds=4", "seconds=0.05"), {})
