@@ -145,5 +145,5 @@ class WheelTest(unittest.TestCase):
             self.assertRegex(made.name, r"^phrenic-[0-9.]+-py3-none-linux_\w+\.whl$")
             with zipfile.ZipFile(made) as archive:
                 names = archive.namelist()
-        for name in ("phrenic/libphrenic_decoder.so", "phrenic/v1/fit_pb2.py", "phrenic/py.typed"):
+        for name in ("phrenic/native/libphrenic_decoder.so", "phrenic/v1/fit_pb2.py", "phrenic/py.typed"):
             self.assertIn(name, names)

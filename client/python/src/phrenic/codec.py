@@ -1,4 +1,4 @@
-"""Compressed frames to positions, by the server's own decoder: libphrenic_decoder.so, which lies beside this file."""
+"""Compressed frames to positions, by the server's own decoder: native/libphrenic_decoder.so."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .errors import FailedPrecondition, InvalidArgument
 from .frame import vectors
 from .v1 import frames_pb2
 
-LIBRARY = Path(__file__).with_name("libphrenic_decoder.so")
+LIBRARY = Path(__file__).with_name("native") / "libphrenic_decoder.so"
 
 
 @lru_cache
