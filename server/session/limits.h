@@ -29,7 +29,7 @@ struct Limits {
   int uploads_of_user = 64;   // kept
   double pause_minutes = 5;   // a session without viewers or calls plays on; 0: forever
   double delete_minutes = 0;  // a session without viewers or calls is kept; 0: forever
-  double share = 0.75;  // fraction of viewers, exports, comparisons, checks, batches, fits, studies that one caller may have
+  double share = 0.75;  // fraction of viewers, exports, comparisons, checks, batches, fits and studies of a caller
 };
 
 }  // namespace phrenic::session
