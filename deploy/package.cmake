@@ -61,10 +61,10 @@ set(control ${PROJECT_SOURCE_DIR}/deploy/debian)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_EXTRA
     "${control}/postinst;${control}/prerm;${control}/postrm;${control}/conffiles")
 
-# Without compiled code of its own, and useful without the programs of this machine, with a server elsewhere. Up to now
-# its files were in phrenic.
+# Its compiled code is the decoder of frames. Useful without the programs of this machine, with a server elsewhere. Up to
+# now its files were in phrenic.
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-phrenic)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.9), python3-grpcio, python3-numpy, python3-protobuf")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "phrenic (= ${PROJECT_VERSION})")

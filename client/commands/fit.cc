@@ -169,8 +169,8 @@ absl::StatusOr<Expected> Expect(const fit::Person& person, const fit::PeopleMoti
 }
 
 // Writes the expected breath as a scene, if that is asked for.
-absl::Status WriteExpectedPerson(const FitCommandOptions& options, const SceneLungs& lungs, const fit::Person& person,
-                                 const fit::Prediction& prediction) {
+absl::Status WriteExpectedPerson(const FitCommandOptions& options, const fit::SceneLungs& lungs,
+                                 const fit::Person& person, const fit::Prediction& prediction) {
   if (options.out.empty()) return absl::OkStatus();
   const std::string number = options.descent ? absl::StrFormat("a descent of %.1f mm", *options.descent)
                                              : absl::StrFormat("a tidal volume of %.2f l", *options.tidal_volume);

@@ -3,7 +3,6 @@
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "client/files/scene_text.h"
 #include "client/files/whole_file.h"
 #include "server/fit/person_scene.h"
@@ -11,8 +10,6 @@
 
 namespace phrenic::client {
 namespace {
-
-constexpr int kMostLandmarks = 400;
 
 std::string SceneNameOf(const std::string& file) { return std::filesystem::path(file).stem().string(); }
 
@@ -27,21 +24,15 @@ absl::Status WriteScene(const std::string& file, const v1::Scene& scene, const s
 
 }  // namespace
 
-absl::Status WriteFittedScene(const std::string& file, const SceneLungs& lungs, const fit::MotionFit& fit,
+absl::Status WriteFittedScene(const std::string& file, const fit::SceneLungs& lungs, const fit::MotionFit& fit,
                               const fit::FitOptions& options, const std::string& source, bool landmarks) {
-  const std::vector<Amplitude> amplitudes = BreathAmplitudes(options.numbers);
-  const std::string description = absl::StrFormat(
-      "Lungs and breath of a person: %d numbers fitted to half of %d landmark pairs (%s), off by %.2f mm at the rest.",
-      options.numbers, fit.exhale.cols(), source, 1e3 * fit.held_out.mean);
-  v1::Scene scene = fit::PersonScene(
-      {SceneNameOf(file), description, lungs.bodies, fit.registered, fit::PresetsOf(fit, amplitudes)}, lungs.templates);
-  if (landmarks) fit::AddLandmarks(fit, kMostLandmarks, scene);
+  const v1::Scene scene = fit::FittedScene(SceneNameOf(file), source, lungs, fit, options.numbers, landmarks);
   const std::string command = absl::StrCat("Written by phrenic fit --modes ", options.numbers, " --split ",
                                            options.split, " from landmark pairs: ", source, ".");
   return WriteScene(file, scene, command);
 }
 
-absl::Status WriteExpectedScene(const std::string& file, const SceneLungs& lungs, const fit::Person& person,
+absl::Status WriteExpectedScene(const std::string& file, const fit::SceneLungs& lungs, const fit::Person& person,
                                 const fit::Prediction& prediction, const std::string& number,
                                 const std::string& source) {
   const std::string title = "Expected of people";

@@ -5,19 +5,19 @@
 #include <string>
 
 #include "absl/status/status.h"
-#include "client/files/scene_lungs.h"
 #include "server/fit/motion_fit.h"
+#include "server/fit/scene_lungs.h"
 
 namespace phrenic::client {
 
 // Writes a fit; the scene has the file's name. `source` names the landmarks' files. `landmarks`: adds up to 400 of the
 // held-out half and what the fit leaves at them. DATA_LOSS names the file if it cannot be
 // written; INVALID_ARGUMENT if the motion is beyond the parameters' ranges.
-absl::Status WriteFittedScene(const std::string& file, const SceneLungs& lungs, const fit::MotionFit& fit,
+absl::Status WriteFittedScene(const std::string& file, const fit::SceneLungs& lungs, const fit::MotionFit& fit,
                               const fit::FitOptions& options, const std::string& source, bool landmarks);
 
 // Writes the motion that one number leads to expect; `number` says which, such as "a descent of 13 mm".
-absl::Status WriteExpectedScene(const std::string& file, const SceneLungs& lungs, const fit::Person& person,
+absl::Status WriteExpectedScene(const std::string& file, const fit::SceneLungs& lungs, const fit::Person& person,
                                 const fit::Prediction& prediction, const std::string& number,
                                 const std::string& source);
 

@@ -6,19 +6,13 @@
 
 #include "absl/status/statusor.h"
 #include "phrenic/v1/session.pb.h"
-#include "server/fit/person.h"
+#include "server/fit/scene_lungs.h"
 
 namespace phrenic::client {
 
-struct SceneLungs {
-  std::array<v1::Body, 2> bodies;  // by fit::Side
-  fit::LungTemplates templates;    // their surfaces
-};
-
-// Returns the bodies with the anatomy of a right and a left lung, generated or read
-// from files below `data_dir`. FAILED_PRECONDITION if the scene lacks one, or a surface is not closed; the errors of
-// session::Models::Resolve and session::MakeMeshSource.
-absl::StatusOr<SceneLungs> ReadSceneLungs(const v1::SceneSource& scene, const std::string& data_dir);
+// Returns the scene's lungs, generated or read from files below `data_dir`. The errors of session::Models::Resolve,
+// session::MakeMeshSource and fit::MakeSceneLungs.
+absl::StatusOr<fit::SceneLungs> ReadSceneLungs(const v1::SceneSource& scene, const std::string& data_dir);
 
 }  // namespace phrenic::client
 

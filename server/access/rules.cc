@@ -69,6 +69,7 @@ constexpr Rule kRules[] = {
     {"StudyService.GetStudyPage", kNone, kNone, kReads},
     {"StudyService.CheckPhysiology", kOwner, kNone, kReads},
     {"StudyService.RunBatch", kOwner, kNone, kReads},
+    {"FitService.FitMotion", kOwner, kNone, kReads},
 };
 
 constexpr std::string_view kRoleNames[] = {"", "viewer", "controller", "owner", "admin"};

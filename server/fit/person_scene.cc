@@ -12,6 +12,7 @@ namespace {
 constexpr double kBall = 0.0015, kRod = 0.0006;  // radii [m]
 constexpr double kTimeStep = 0.01;               // [s]: nothing is integrated
 constexpr double kLungMass = 0.5;                // [kg]: no force acts on it
+constexpr int kMostLandmarks = 400;              // of a scene
 
 // Returns the number with so many digits behind the point.
 double Rounded(double value, int digits) {
@@ -176,6 +177,17 @@ v1::Scene PersonScene(const PersonBreath& breath, const LungTemplates& templates
   scene.mutable_parameters()->set_time_step(kTimeStep);
   AddMeasures(scene);
   for (const v1::Preset& preset : breath.presets) *scene.add_presets() = preset;
+  return scene;
+}
+
+v1::Scene FittedScene(const std::string& name, const std::string& source, const SceneLungs& lungs, const MotionFit& fit,
+                      int numbers, bool landmarks) {
+  const std::string description = absl::StrFormat(
+      "Lungs and breath of a person: %d numbers fitted to half of %d landmark pairs (%s), off by %.2f mm at the rest.",
+      numbers, fit.exhale.cols(), source, 1e3 * fit.held_out.mean);
+  v1::Scene scene = PersonScene(
+      {name, description, lungs.bodies, fit.registered, PresetsOf(fit, BreathAmplitudes(numbers))}, lungs.templates);
+  if (landmarks) AddLandmarks(fit, kMostLandmarks, scene);
   return scene;
 }
 

@@ -10,6 +10,7 @@
 
 #include "phrenic/v1/scene.pb.h"
 #include "server/fit/motion_fit.h"
+#include "server/fit/scene_lungs.h"
 
 namespace phrenic::fit {
 
@@ -32,6 +33,12 @@ std::vector<v1::Preset> PresetsOf(const MotionFit& fit, const std::vector<Amplit
 
 // Returns the scene. Requires: at least one preset.
 v1::Scene PersonScene(const PersonBreath& breath, const LungTemplates& templates);
+
+// Returns the scene of a fit with `numbers` amplitudes. `source` says what the landmarks are of. `landmarks`: adds up
+// to 400 of the held-out half and what the fit leaves at them. Its numbers may be beyond the parameters' ranges
+// (schema::Validate).
+v1::Scene FittedScene(const std::string& name, const std::string& source, const SceneLungs& lungs, const MotionFit& fit,
+                      int numbers, bool landmarks);
 
 // Adds the landmarks of the held-out half, at most `most` of them, evenly chosen: balls that move with the fitted
 // tissue, balls that stay where the landmarks are at end inhale, and a rod from each predicted to each true place.

@@ -21,6 +21,7 @@
 #include "server/service/compare_service.h"
 #include "server/service/control_service.h"
 #include "server/service/export_service.h"
+#include "server/service/fit_service.h"
 #include "server/service/frame_service.h"
 #include "server/service/health_service.h"
 #include "server/service/memory_trimmer.h"
@@ -128,6 +129,7 @@ struct Server::Parts {
         upload_service(uploads, options.limits, guard),
         study_service(models, options.web_root, guard, clock, options.limits, store.get()),
         compare_service(table, options.limits, guard),
+        fit_service(models, options.limits, guard),
         server_service(std::filesystem::exists(options.web_root + "/index.html"), !options.data_dir.empty(),
                        options.tls.used(), guard),
         call_limits(options.max_calls, RequestTime(options), static_cast<std::size_t>(options.max_message_bytes)),
@@ -177,6 +179,7 @@ struct Server::Parts {
   UploadService upload_service;
   StudyService study_service;
   CompareService compare_service;
+  FitService fit_service;
   ServerService server_service;
   HealthService health_service;
   CallLimits call_limits;
@@ -229,6 +232,7 @@ void Server::Parts::AddCalls() {
   upload_service.AddTo(calls);
   study_service.AddTo(calls);
   compare_service.AddTo(calls);
+  fit_service.AddTo(calls);
   server_service.AddTo(calls);
   health_service.AddTo(calls);
   AddReflection(calls);

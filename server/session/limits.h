@@ -14,7 +14,7 @@ struct Limits {
   int viewers = 64;                   // of one session
   int viewers_in_all = 256;           // of all sessions
   double session_cpu = 1;             // share of a core for stepping one session; 1: no limit
-  int exports = 2;                    // running at the same time; comparisons, checks and batches as well
+  int exports = 2;                    // running at the same time; comparisons, checks, batches and fits as well
   int models = 4;                     // compiled scenes kept for the next session
   std::int64_t vertices = 4'000'000;  // of one scene
   std::int64_t elements = 4'000'000;  // of one scene (SizeLimits)
@@ -29,7 +29,7 @@ struct Limits {
   int uploads_of_user = 64;   // kept
   double pause_minutes = 5;   // a session without viewers or calls plays on; 0: forever
   double delete_minutes = 0;  // a session without viewers or calls is kept; 0: forever
-  double share = 0.75;  // fraction of viewers, exports, comparisons, checks, batches, studies that one caller may have
+  double share = 0.75;  // fraction of viewers, exports, comparisons, checks, batches, fits and studies of a caller
 };
 
 }  // namespace phrenic::session

@@ -82,6 +82,15 @@ absl::StatusOr<v1::Scene> Models::Resolve(const v1::SceneSource& source) const {
   return scene;
 }
 
+absl::StatusOr<MeshSource> Models::MeshesOf(const v1::Scene& scene, const Requester& by) const {
+  auto surfaces = HoldSurfaces(scene, by);
+  if (!surfaces.ok()) return surfaces.status();
+  const SizeLimits most = {limits_.vertices, limits_.elements};
+  const auto size = EstimateSize(scene, MakeSizeSource(data_dir_, *surfaces), most);
+  if (!size.ok()) return size.status();
+  return MakeMeshSource(data_dir_, *std::move(surfaces), cache_);
+}
+
 // The scene, with the size and the modification time of each file that it names.
 std::string Models::Key(const v1::Scene& scene) const {
   std::string key = DeterministicBytes(scene);

@@ -47,6 +47,9 @@ class Models {
   // Returns the scene that `source` names or holds, at its resolution; INVALID_ARGUMENT "source: ..." if it is empty.
   // The resolution [mm] applies to generated bodies. The errors of schema::Resolve and SceneCatalogue::Find.
   absl::StatusOr<v1::Scene> Resolve(const v1::SceneSource& source) const;
+  // Returns the source of a resolved scene's meshes, for what reads single bodies. Thread-safe; may outlive the call.
+  // The errors of Uploads::Hold; RESOURCE_EXHAUSTED if the scene is larger than allowed.
+  absl::StatusOr<MeshSource> MeshesOf(const v1::Scene& scene, const Requester& by) const;
   // Returns the compiled scene. The same scene gives the same model while its surface files are unchanged. The errors
   // of Uploads::Hold for the uploaded files that it names, of Compile, and of CompileSlots::Take. RESOURCE_EXHAUSTED if
   // the model is larger than allowed; CANCELLED once by.cancelled is true and no one else wants it. RESOURCE_EXHAUSTED

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import socket
+import threading
 import unittest
 from concurrent import futures
 from pathlib import Path
@@ -75,6 +77,68 @@ class FakeServer(server_pb2_grpc.ServerServiceServicer, session_pb2_grpc.Session
 
     def DeleteSession(self, request, context):  # noqa: N802
         return self._answer("DeleteSession", request, context, session_pb2.DeleteSessionResponse())
+
+
+class Relay:
+    """A TCP relay to a server, whose connections a test can cut."""
+
+    def __init__(self, target: str) -> None:
+        host, _, port = target.rpartition(":")
+        self._target = (host, int(port))
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self._open: list[_Pair] = []
+        self._lock = threading.Lock()
+        self.address = f"127.0.0.1:{self._listener.getsockname()[1]}"
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def cut(self) -> None:
+        """Closes the connections; new ones are accepted."""
+        with self._lock:
+            for each in self._open:
+                each.close_now()
+            self._open.clear()
+
+    def stop(self) -> None:
+        """Closes the connections for good. A second call has no effect."""
+        if self._listener.fileno() >= 0:
+            self._listener.shutdown(socket.SHUT_RDWR)
+            self._listener.close()
+        self.cut()
+
+    def _accept(self) -> None:
+        while True:
+            try:
+                client, _ = self._listener.accept()
+                pair = _Pair(client, socket.create_connection(self._target))
+            except OSError:
+                return
+            with self._lock:
+                self._open.append(pair)
+
+
+class _Pair:
+    """A connection and the one that it is relayed to."""
+
+    def __init__(self, *ends: socket.socket) -> None:
+        self._ends = ends
+        for source, sink in (ends, ends[::-1]):
+            threading.Thread(target=self._copy, args=(source, sink), daemon=True).start()
+
+    def close_now(self) -> None:
+        for end in self._ends:
+            try:
+                end.shutdown(socket.SHUT_RDWR)
+            except OSError:
+                pass  # it is closed
+            end.close()
+
+    def _copy(self, source: socket.socket, sink: socket.socket) -> None:
+        try:
+            while data := source.recv(1 << 16):
+                sink.sendall(data)
+        except OSError:
+            pass
+        self.close_now()
 
 
 def failing(code: grpc.StatusCode, times: int, then: Any) -> Callable[[Any, grpc.ServicerContext], Any]:

@@ -3,7 +3,7 @@
 import itertools
 
 import phrenic
-from support import SessionTest
+from support import Relay, SessionTest
 
 FORCES = [{"breath_force": force} for force in (0.5, 1, 1.5, 2, 2.5)]
 
@@ -21,6 +21,58 @@ class BatchTest(SessionTest):
         self.assertEqual(self.hashes(1), expected)
         self.assertEqual(self.hashes(3), expected)
         self.assertEqual(len(set(expected.values())), len(FORCES))
+
+    def relayed(self, retries):
+        """A connection by a relay, and the `finished` of each request that goes over it."""
+        relay = Relay(phrenic.default_server().address)
+        self.addCleanup(relay.stop)
+        server = phrenic.connect(relay.address, retries=retries)
+        self.addCleanup(server.close)
+        asked, stream = [], server.connection.stream
+
+        def noted(call):
+            asked.append(set(call.request.finished))
+            return stream(call)
+
+        server.connection.stream = noted
+        return relay, server, asked
+
+    def test_a_lost_connection_costs_no_run(self):
+        forces = [{"breath_force": 0.1 * i} for i in range(20)]
+        expected = {run.index: run.state_hash for run in phrenic.batch("pressure-lungs", forces, seconds=1, fps=1)}
+        relay, server, asked = self.relayed(retries=5)
+        seen = []
+        for run in phrenic.batch("pressure-lungs", forces, seconds=1, fps=1, server=server):
+            seen.append((run.index, run.state_hash))
+            if len(seen) in (3, 9):
+                relay.cut()
+        self.assertEqual(len(seen), len(forces), "a run came twice or not at all")
+        self.assertEqual(dict(seen), expected)
+        self.assertEqual(asked[0], set())
+        self.assertEqual(len(asked), 3)
+        for before, after in zip(asked, asked[1:]):
+            self.assertLess(before, after)
+        self.assertLessEqual({index for index, _ in seen[:9]}, asked[-1])
+
+    def test_a_connection_that_stays_lost_is_an_error(self):
+        relay, server, asked = self.relayed(retries=1)
+        runs = phrenic.batch("pressure-lungs", [{}] * 20, seconds=1, fps=1, server=server)
+        next(runs)
+        relay.stop()
+        with self.assertRaises(phrenic.errors.Unavailable):
+            list(runs)
+        self.assertEqual(len(asked), 2)
+
+    def test_a_batch_that_was_left_is_finished_by_another_call(self):
+        runs = phrenic.batch("cube-springs", FORCES, seconds=0.2, fps=10)
+        first = {run.index: run.state_hash for run in itertools.islice(runs, 2)}
+        runs.close()
+        rest = phrenic.batch("cube-springs", FORCES, seconds=0.2, fps=10, finished=first)
+        rest = {run.index: run.state_hash for run in rest}
+        self.assertEqual(set(first) & set(rest), set())
+        whole = phrenic.batch("cube-springs", FORCES, seconds=0.2, fps=10)
+        self.assertEqual({**first, **rest}, {run.index: run.state_hash for run in whole})
+        self.assertEqual(list(phrenic.batch("cube-springs", FORCES, seconds=0.2, finished=range(5))), [])
 
     def test_parameters_may_be_endless_and_a_loop_may_break(self):
         begun = []

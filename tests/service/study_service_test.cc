@@ -1,4 +1,5 @@
 // StudyService over a socket.
+#include <map>
 #include <set>
 
 #include "phrenic/v1/study.grpc.pb.h"
@@ -111,6 +112,40 @@ TEST_F(Studies, RunBatchesThatStreamEachResult) {
   EXPECT_EQ(runs.size(), 5u);
 }
 
+TEST_F(Studies, ResumeABatchThatWasCutOff) {
+  v1::RunBatchRequest request;
+  request.mutable_source()->set_name("cube-springs");
+  request.set_seconds(0.5);
+  for (int i = 0; i < 12; ++i) request.add_runs()->mutable_parameters()->set_breath_force(0.2 * i);
+  // Reads until it has `most` results, then cancels.
+  const auto read = [&](std::size_t most) {
+    std::map<int, std::string> hashes;
+    grpc::ClientContext context;
+    const auto reader = stub_->RunBatch(&context, request);
+    v1::RunBatchResponse response;
+    while (hashes.size() < most && reader->Read(&response)) {
+      if (response.has_result()) hashes[response.result().run()] = response.result().state_hash();
+    }
+    context.TryCancel();
+    reader->Finish();
+    return hashes;
+  };
+  const auto whole = read(100);
+  ASSERT_EQ(whole.size(), 12u);
+  auto some = read(3);
+  ASSERT_EQ(some.size(), 3u);
+  for (const auto& [run, hash] : some) request.add_finished(run);
+  std::map<int, std::string> rest;
+  for (int i = 0; i < 100 && rest.empty(); ++i) {  // the first stream may hold its place for a moment
+    rest = read(100);
+    absl::SleepFor(absl::Milliseconds(20));
+  }
+  EXPECT_EQ(rest.size(), 9u);
+  some.merge(rest);
+  EXPECT_TRUE(rest.empty()) << "a run came twice";
+  EXPECT_EQ(some, whole);
+}
+
 TEST_F(Studies, RefuseBatchesByTheField) {
   const auto refused = [&](const v1::RunBatchRequest& request) {
     grpc::ClientContext context;
@@ -124,6 +159,9 @@ TEST_F(Studies, RefuseBatchesByTheField) {
   EXPECT_THAT(refused(request).error_message(), HasSubstr("runs"));
   request.add_runs()->mutable_parameters()->set_breath_force(-1);
   EXPECT_THAT(refused(request).error_message(), HasSubstr("runs[0].parameters.breath_force: -1 is outside 0 to 20"));
+  request.mutable_runs(0)->clear_parameters();
+  request.add_finished(1);
+  EXPECT_THAT(refused(request).error_message(), HasSubstr("finished[0]: 1 is not the index of a run"));
 }
 
 }  // namespace

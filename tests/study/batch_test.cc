@@ -110,6 +110,22 @@ TEST(Batch, GoesOnFromAStateAsIfItHadNotStopped) {
   EXPECT_THAT(BatchFault(second), HasSubstr("runs[0].start.time"));
 }
 
+TEST(Batch, ResumesWithTheRunsThatAreMissing) {
+  v1::RunBatchRequest request = Runs(7);
+  auto expected = HashesOf(request);
+  for (const int run : {5, 0, 2, 2}) {
+    request.add_finished(run);
+    expected.erase(run);
+  }
+  EXPECT_EQ(HashesOf(request), expected);
+  for (int run = 0; run < 7; ++run) request.add_finished(run);
+  EXPECT_TRUE(HashesOf(request).empty());
+  request.add_finished(7);
+  EXPECT_THAT(BatchFault(request), HasSubstr("finished[11]: 7 is not the index of a run: there are 7"));
+  request.set_finished(11, -1);
+  EXPECT_THAT(BatchFault(request), HasSubstr("finished[11]: -1"));
+}
+
 TEST(Batch, RefusesBadRunsBeforeAnyBegins) {
   v1::RunBatchRequest request = Runs(3);
   request.mutable_runs(2)->mutable_parameters()->set_breath_force(1000);

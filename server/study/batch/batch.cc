@@ -104,8 +104,26 @@ absl::StatusOr<Batch> Batch::Make(v1::RunBatchRequest request, const Compiler& c
   if (!model.ok()) return model.status();
   SetDefaults(request);
   Batch batch(std::move(request), *std::move(model));
+  if (absl::Status status = batch.SetWanted(); !status.ok()) return status;
   if (absl::Status status = batch.Check(cancelled); !status.ok()) return status;
   return batch;
+}
+
+absl::Status Batch::SetWanted() {
+  std::vector<bool> finished(static_cast<std::size_t>(request_.runs_size()));
+  for (int i = 0; i < request_.finished_size(); ++i) {
+    const int run = request_.finished(i);
+    if (run < 0 || run >= request_.runs_size()) {
+      return absl::InvalidArgumentError(
+          absl::StrFormat("finished[%d]: %d is not the index of a run: there are %d, and the first is 0", i, run,
+                          request_.runs_size()));
+    }
+    finished[static_cast<std::size_t>(run)] = true;
+  }
+  for (int run = 0; run < request_.runs_size(); ++run) {
+    if (!finished[static_cast<std::size_t>(run)]) wanted_.push_back(run);
+  }
+  return absl::OkStatus();
 }
 
 double Batch::CountSamples() const { return request_.seconds() * request_.frames_per_second(); }
@@ -118,7 +136,7 @@ absl::Status Batch::Check(const std::function<bool()>& cancelled) const {
                         request_.seconds(), numbers, kMostSampledNumbers));
   }
   if (const auto preset = FindPreset(model_->scene, request_.preset()); !preset.ok()) return preset.status();
-  for (int run = 0; run < size(); ++run) {
+  for (const int run : wanted_) {
     if (cancelled()) return Cancelled();
     if (absl::Status status = CheckRun(run); !status.ok()) return status;
   }
@@ -156,7 +174,7 @@ absl::StatusOr<State> Batch::StartOf(int run, const v1::Parameters& parameters) 
 int Batch::threads() const {
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const int wanted = request_.threads() > 0 ? request_.threads() : cores;
-  return std::min({wanted, cores, size()});
+  return std::min({wanted, cores, static_cast<int>(wanted_.size())});
 }
 
 v1::BatchHeader Batch::Header() const {

@@ -2,6 +2,8 @@
 #ifndef PHRENIC_SERVER_STUDY_BATCH_BATCH_H_
 #define PHRENIC_SERVER_STUDY_BATCH_BATCH_H_
 
+#include <vector>
+
 #include "phrenic/v1/batch.pb.h"
 #include "server/stream/layout.h"
 #include "server/study/context.h"
@@ -20,19 +22,21 @@ class Batch {
   static absl::StatusOr<Batch> Make(v1::RunBatchRequest request, const Compiler& compile,
                                     const std::function<bool()>& cancelled);
 
-  int size() const { return request_.runs_size(); }
-  int threads() const;  // that the runs are divided among
+  // Returns the runs that are wanted, all but `finished`, ascending.
+  const std::vector<int>& wanted() const { return wanted_; }
+  int threads() const;  // that the wanted runs are divided among; 0 if there are no such
   v1::BatchHeader Header() const;
   // Returns about the size of one result [byte].
   std::size_t ResultBytes() const;
   // Runs one of them on the calling thread. A divergence, or too much CPU time, is a result with `problem`. CANCELLED
-  // if `cancelled`, asked every few steps, returns true. Requires: 0 <= run < size().
+  // if `cancelled`, asked every few steps, returns true. Requires: 0 <= run < runs_size() of the request.
   absl::StatusOr<v1::BatchResult> Run(int run, const std::function<bool()>& cancelled) const;
 
  private:
   Batch(v1::RunBatchRequest request, std::shared_ptr<const Model> model);
   absl::Status Check(const std::function<bool()>& cancelled) const;
   absl::Status CheckRun(int run) const;
+  absl::Status SetWanted();
   // Returns what the request sets for a run.
   v1::Parameters ParametersOf(int run) const;
   // Returns the model with the parameters of a run, every field set, and its time step.
@@ -41,6 +45,7 @@ class Batch {
   double CountSamples() const;
 
   v1::RunBatchRequest request_;
+  std::vector<int> wanted_;
   std::shared_ptr<const Model> model_;
   stream::Layout layout_;
 };

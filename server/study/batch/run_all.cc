@@ -23,8 +23,8 @@ class ResultQueue {
   void Work() {
     jobs::LowerThreadPriority();
     const std::function<bool()> stop = [this] { return ended_ || cancelled_(); };
-    for (int run = next_++; run < batch_.size() && !ended_; run = next_++) {
-      absl::StatusOr<v1::BatchResult> result = batch_.Run(run, stop);
+    for (std::size_t next = next_++; next < batch_.wanted().size() && !ended_; next = next_++) {
+      absl::StatusOr<v1::BatchResult> result = batch_.Run(batch_.wanted()[next], stop);
       if (!Put(std::move(result))) return;
     }
   }
@@ -71,7 +71,7 @@ class ResultQueue {
 
   const Batch& batch_;
   const std::function<bool()>& cancelled_;
-  std::atomic<int> next_ = 0;
+  std::atomic<std::size_t> next_ = 0;  // in batch_.wanted()
   std::atomic<bool> ended_ = false;
   absl::Mutex mutex_;
   std::deque<v1::BatchResult> results_ ABSL_GUARDED_BY(mutex_);
@@ -88,7 +88,7 @@ absl::Status RunAll(const Batch& batch, absl::FunctionRef<bool(v1::BatchResult)>
     std::vector<std::jthread> workers;
     workers.reserve(static_cast<size_t>(batch.threads()));
     for (int i = 0; i < batch.threads(); ++i) workers.emplace_back([&queue] { queue.Work(); });
-    for (int done = 0; done < batch.size() && taken && queue.status().ok();) {
+    for (std::size_t done = 0; done < batch.wanted().size() && taken && queue.status().ok();) {
       if (std::optional<v1::BatchResult> result = queue.Take()) {
         taken = take(*std::move(result));
         ++done;

@@ -25,6 +25,7 @@ os.environ.setdefault("GRPC_CLIENT_CHANNEL_BACKUP_POLL_INTERVAL_MS", "1000")
 from . import aio, errors  # noqa: E402
 from .connection import Tls
 from .errors import Error
+from .fits import Fit, fit
 from .frame import Body, Frame, State
 from .jobs import Comparison, Physiology, Study
 from .operations import EVERYTHING, SimulationWarning
@@ -39,6 +40,7 @@ __all__ = [
     "Comparison",
     "EVERYTHING",
     "Error",
+    "Fit",
     "Frame",
     "LocalServer",
     "Physiology",
@@ -56,6 +58,7 @@ __all__ = [
     "connect",
     "default_server",
     "errors",
+    "fit",
     "local",
 ]
 

@@ -22,6 +22,7 @@ from .advance import AsyncSteps
 from .call import Call, Operation, T, delay_before_repeat, one
 from .connection import Channel, Target, Tls, target_of
 from .errors import FailedPrecondition, error_of
+from .fits import Fit, Landmarks, fitted
 from .frame import Frame
 from .operations import EVERYTHING, Scene, SessionOperations, attach, create, source_of
 from .server import default_server
@@ -70,8 +71,11 @@ class Connection(Channel):
         answer = self.open(call, call.deadline or self.target.timeout)
         if call.each is None:
             return await answer
-        async for message in answer:
-            call.each(message)
+        try:
+            async for message in answer:
+                call.each(message)
+        finally:  # a receiver that raises ends the call
+            answer.cancel()
         return None
 
 
@@ -206,10 +210,10 @@ class Session(SessionOperations):
         """As phrenic.Session.pause."""
         await self._do(self._pause())
 
-    async def watch(self, max_fps: float = 60) -> AsyncIterator[Frame]:
+    async def watch(self, max_fps: float = 60, max_error_mm: Optional[float] = None) -> AsyncIterator[Frame]:
         """As phrenic.Session.watch."""
         await self._do(self._describe([state_pb2.STATE_PART_BODIES]))
-        events = self._begun().open(self._watch_call(max_fps))
+        events = self._begun().open(self._watch_call(max_fps, max_error_mm))
         try:
             async for event in events:
                 frame = self._noted(event)
@@ -235,6 +239,10 @@ class Session(SessionOperations):
     async def physiology(self, presets: Sequence[str] = (), progress: jobs.Progress = None) -> jobs.Physiology:
         """As phrenic.Session.physiology."""
         return await self._do(jobs.physiology(self._source, presets, progress))
+
+    async def fit(self, landmarks: Landmarks, progress: jobs.Progress = None, **options: Any) -> Fit:
+        """As phrenic.Session.fit."""
+        return await self._do(fitted(self._source, landmarks, options, progress))
 
     async def compare(self, other: Union["Session", str, Path], body: str = "", **options: Any) -> jobs.Comparison:
         """As phrenic.Session.compare."""

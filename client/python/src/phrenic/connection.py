@@ -175,8 +175,11 @@ class Connection(Channel):
         answer = self.open(call, call.deadline or self.target.timeout)
         if call.each is None:
             return answer
-        for message in answer:
-            call.each(message)
+        try:
+            for message in answer:
+                call.each(message)
+        finally:  # a receiver that raises ends the call
+            answer.cancel()
         return None
 
     def stream(self, call: Call) -> Iterator[Any]:

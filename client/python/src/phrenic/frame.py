@@ -1,15 +1,14 @@
 """What a session looks like between two steps: bodies, measures, and every bit of its state.
 
 Positions come as float32 arrays over the bytes that protobuf hands out; nothing is decoded or copied after that. The
-encoding is the raw one (CODEC_RAW, STATE_PART_BODIES): it is exact and needs no decoder. Compressed encodings would save
-bandwidth that loopback has.
+encoding is the raw one (CODEC_RAW, STATE_PART_BODIES), which is exact, unless watch() is given an error bound (codec.py).
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Iterable, Mapping, Optional, Sequence
+from typing import Iterable, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from .names import look_up
 from .v1 import frames_pb2, measures_pb2, state_pb2
 
 
-def vectors(data: bytes, kind: str = "<f4", width: int = 3) -> np.ndarray:
+def vectors(data: Union[bytes, np.ndarray], kind: str = "<f4", width: int = 3) -> np.ndarray:
     """Returns the bytes as rows of `width` numbers, read-only and without a copy.
 
     >>> vectors(np.arange(6, dtype="<f4").tobytes()).shape
@@ -104,7 +103,7 @@ class Frame:
     state_hash: str
     """16 hexadecimal digits; equal states have equal hashes. Empty in a frame of watch()."""
     state: State
-    _positions: bytes = field(repr=False)
+    _positions: Union[bytes, np.ndarray] = field(repr=False)
     _poses: bytes = field(repr=False)
     _geometry: Optional[Geometry] = field(repr=False)
     _readings: Sequence[measures_pb2.MeasureReading] = field(repr=False, default=())
@@ -191,8 +190,8 @@ def frame_of(
     )
 
 
-def watched_frame(frame: frames_pb2.Frame, geometry: Geometry) -> Frame:
-    """Returns the frame of a stream, which has the fraction of a breath alone."""
+def watched_frame(frame: frames_pb2.Frame, geometry: Geometry, positions: Union[bytes, np.ndarray]) -> Frame:
+    """Returns the frame of a stream, which has the fraction of a breath alone, with its decoded positions."""
     state = State(frame.tick, frame.time, math.nan)
     return Frame(
         frame.tick,
@@ -201,7 +200,7 @@ def watched_frame(frame: frames_pb2.Frame, geometry: Geometry) -> Frame:
         readings(frame.measures),
         "",
         state,
-        frame.positions,
+        positions,
         frame.poses,
         geometry,
         frame.measures,

@@ -2,6 +2,7 @@
 
     from phrenic import notebook
     notebook.view(s)                                     # the viewer of a session, in the page
+    notebook.player(s)                                   # a breath that plays in the page, also without a server
     notebook.plot(s.play(seconds=4), "lung volume")      # measures over time
 
 A page may frame a viewer if phrenicd was started with `--allow-origin` and the page's origin. The server that
@@ -15,6 +16,7 @@ import io
 import urllib.request
 from html import escape
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 from urllib.parse import urlsplit
 
@@ -47,7 +49,8 @@ class View:
         address = escape(self.address)
         frame = f'<iframe src="{address}" title="Viewer" width="100%" height="{self.height}" style="border:0"></iframe>'
         shown = f"<p>{escape(self.problem)}</p>" if self.problem else frame
-        return f'{shown}<p><a href="{address}" target="_blank" rel="noopener">Open in a tab of its own</a></p>'
+        link = f'<a href="{address}" target="_blank" rel="noopener">Open in a tab of its own</a>'
+        return f"{shown}<p>{link}, while its server runs. For a page that is kept: phrenic.notebook.player.</p>"
 
     def __repr__(self) -> str:
         return self.address
@@ -69,6 +72,37 @@ def view(session: Union[Session, str], height: int = 600, role: str = "", hours:
         remedy = "build it with deploy/run, or start phrenicd with --web"
         raise FailedPrecondition(f"{server.address} serves no viewer: {remedy}")
     return View(address + _joined(session, role, hours), height, problem_of(address))
+
+
+class Player:
+    """A motion that plays in a notebook's page. It needs no server and no network, so that a page that nbconvert writes
+    plays it too."""
+
+    def __init__(self, page: str, height: int = 600) -> None:
+        """`page`: of Session.export("motion.html")."""
+        self.page = page
+        self.height = height
+
+    def save(self, path: Union[str, Path]) -> None:
+        """Writes the page as a file of its own."""
+        Path(path).write_text(self.page, encoding="utf-8")
+
+    def _repr_html_(self) -> str:
+        """As notebooks show it. The frame has an origin of its own: its script sees nothing of the notebook's page."""
+        style = f'width="100%" height="{self.height}" style="border:0"'
+        return f'<iframe srcdoc="{escape(self.page)}" sandbox="allow-scripts" title="Motion" {style}></iframe>'
+
+    def __repr__(self) -> str:
+        return f"<Player of {len(self.page) / 1e6:.1f} MB>"
+
+
+def player(session: Session, seconds: float = 0, height: int = 600, **options: Any) -> Player:
+    """Returns `seconds` of a session from now on, or one breath, as a motion that plays in the page, `height` pixels high.
+    About 1 MB and the motion. `options`: those of Session.export. FailedPrecondition if the server's viewer is not built."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder, f"{session.scene}.html")
+        session.export(path, seconds=seconds, **options)
+        return Player(path.read_text(encoding="utf-8"), height)
 
 
 def shown(session: Session) -> Optional[str]:

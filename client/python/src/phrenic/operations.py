@@ -13,6 +13,7 @@ import numpy as np
 from google.protobuf import text_format
 
 from .call import LONG, Call, Operation
+from .codec import Decoder
 from .errors import Aborted, InvalidArgument, NotFound, Unavailable
 from .frame import Frame, Geometry, frame_of, watched_frame
 from .names import enum_number, fill, look_up, row
@@ -66,6 +67,7 @@ class SessionOperations:
         self._geometry: Optional[Geometry] = None
         self._layout: Optional[state_pb2.StateLayout] = None
         self._last: Optional[Frame] = None
+        self._decoder: Optional[Decoder] = None
 
     @property
     def id(self) -> str:
@@ -265,9 +267,12 @@ class SessionOperations:
             pass  # it has ended already
 
     # --- watching ---
-    def _watch_call(self, max_fps: float) -> Call:
+    def _watch_call(self, max_fps: float, max_error_mm: Optional[float]) -> Call:
+        codec = frames_pb2.CODEC_RAW if max_error_mm is None else frames_pb2.CODEC_PREDICTED
+        if max_error_mm is not None and self._decoder is None and self._geometry is not None:
+            self._decoder = Decoder(self._geometry.bodies.values())
         request = frames_pb2.WatchFramesRequest(
-            session_id=self.id, max_fps=max_fps, codec=frames_pb2.CODEC_RAW, watch_id=str(uuid.uuid4())
+            session_id=self.id, max_fps=max_fps, codec=codec, max_error_mm=max_error_mm, watch_id=str(uuid.uuid4())
         )
         return Call("FrameService.WatchFrames", request)
 
@@ -277,7 +282,10 @@ class SessionOperations:
             self.status, self._last = event.session, None
         if not event.HasField("frame") or self._geometry is None:
             return None
-        return watched_frame(event.frame, self._geometry)
+        frame = event.frame
+        if self._decoder is None or frame.codec in (frames_pb2.CODEC_UNSPECIFIED, frames_pb2.CODEC_RAW):
+            return watched_frame(frame, self._geometry, frame.positions)
+        return watched_frame(frame, self._geometry, self._decoder.decode(frame.codec, frame.positions))
 
 
 def create(

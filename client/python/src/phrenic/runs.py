@@ -8,14 +8,15 @@
 from __future__ import annotations
 
 import re
+import time
 from dataclasses import dataclass
 from itertools import repeat
-from typing import Any, Iterable, Iterator, Mapping, Optional, Sequence, Union
+from typing import Any, Container, Iterable, Iterator, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
-from .call import Call
-from .errors import Error, InvalidArgument
+from .call import Call, delay_before_repeat
+from .errors import Error, InvalidArgument, ResourceExhausted, Unavailable
 from .frame import Frame, State, vectors
 from .operations import Scene, parameters_of, parts_of, source_of
 from .server import Server, default_server
@@ -25,6 +26,8 @@ BLOCK = 256
 """The most runs of one request."""
 BLOCK_BYTES = 8_000_000
 """About the size of one request [byte]: half of what a server accepts."""
+NOTICED = 20.0
+"""Time within which a server notices a lost connection, ends its batch and has room for the rest [s]."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,7 @@ def batch(
     starts: Optional[Iterable[State]] = None,
     read: Sequence[str] = (),
     threads: Optional[int] = None,
+    finished: Container[int] = (),
     server: Optional[Server] = None,
 ) -> Iterator[Run]:
     """Runs the scene once for each set of live parameters and yields each run as it ends. `threads` runs are in progress
@@ -68,7 +72,9 @@ def batch(
     are the same, bit for bit, at any number of threads. `start`: a frame of a session of this scene, with "positions",
     "velocities" and "scalars", from which every run goes on; `starts`: a state a run; default: the scene's start. (An
     integrator that remembers the step before, velocity_verlet or bdf2, begins there as after a reset.) `read`: parts of the last state,
-    "positions", "velocities" and "scalars". A loop that breaks ends the runs in progress."""
+    "positions", "velocities" and "scalars". A loop that breaks ends the runs in progress; `finished`, the indices of the
+    runs that it had, lets another call with the same arguments run the rest. After a lost connection the batch goes on by
+    itself with the runs that are missing; Unavailable once `retries` attempts have given none."""
     host = server or default_server()
     request = batch_pb2.RunBatchRequest(
         source=source_of(scene, resolution_mm), preset=preset, seconds=seconds, frames_per_second=fps,
@@ -79,20 +85,23 @@ def batch(
     values, begin = _with_starts(parameters, start, starts), 0
     while True:
         block, size = [], 0
-        del request.runs[:]
+        del request.runs[:], request.finished[:]
         for each, state in values:
             index = begin + len(block)
             try:
                 request.runs.add(parameters=parameters_of(each), start=None if state is None else _arrays_of(state))
             except InvalidArgument as error:
                 raise InvalidArgument(f"runs[{index}]: {error.message}") from None
+            if index in finished:
+                request.finished.append(len(block))
             block.append(each)
             size += request.runs[-1].ByteSize()
             if len(block) == BLOCK or size > BLOCK_BYTES:
                 break
         if not block:
             return
-        yield from _run(host, request, begin, block)
+        if len(request.finished) < len(block):
+            yield from _run(host, request, begin, block)
         begin += len(block)
 
 
@@ -134,17 +143,31 @@ def _arrays_of(state: State) -> state_pb2.StateArrays:
 def _run(
     host: Server, request: batch_pb2.RunBatchRequest, begin: int, block: Sequence[Mapping[str, Any]]
 ) -> Iterator[Run]:
-    header = batch_pb2.BatchHeader()
-    try:
-        for message in host.connection.stream(Call("StudyService.RunBatch", request)):
-            if message.HasField("header"):
-                header = message.header
-            else:
+    """Yields the runs of one request that are not finished. After a lost connection it asks for those that are missing."""
+    call, attempt, lost = Call("StudyService.RunBatch", request), 0, -NOTICED
+    while True:
+        header = batch_pb2.BatchHeader()
+        try:
+            for message in host.connection.stream(call):
+                if message.HasField("header"):
+                    header = message.header
+                    continue
+                request.finished.append(message.result.run)
+                attempt = 0
                 yield _run_of(message.result, header, begin, block, request.read)
-    except Error as error:  # names a run by its place in this request
-        error.message = re.sub(r"^runs\[(\d+)\]", lambda m: f"runs[{begin + int(m[1])}]", error.message)
-        error.args = (error.message, *error.args[1:])
-        raise
+            return
+        except Error as error:
+            delay = delay_before_repeat(call, error, attempt, host.connection.target.retries)
+            if isinstance(error, Unavailable):
+                lost = time.monotonic()
+                attempt += 1
+            elif isinstance(error, ResourceExhausted) and time.monotonic() - lost < NOTICED:
+                delay = 0.5  # the lost stream may hold its place still
+            if delay is None:  # the message names a run by its place in this request
+                error.message = re.sub(r"^runs\[(\d+)\]", lambda m: f"runs[{begin + int(m[1])}]", error.message)
+                error.args = (error.message, *error.args[1:])
+                raise
+        time.sleep(delay)
 
 
 def _run_of(

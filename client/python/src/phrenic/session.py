@@ -12,6 +12,7 @@ from .advance import Steps, frames_ahead
 from .call import T, Operation
 from .connection import Connection
 from .errors import error_of
+from .fits import Fit, Landmarks, fitted
 from .frame import Frame
 from .operations import EVERYTHING, Scene, SessionOperations, create, parts_of, source_of
 from .v1 import session_pb2, state_pb2
@@ -191,11 +192,12 @@ class Session(SessionOperations):
         """Stops a session that runs."""
         self._do(self._pause())
 
-    def watch(self, max_fps: float = 60) -> Iterator[Frame]:
+    def watch(self, max_fps: float = 60, max_error_mm: Optional[float] = None) -> Iterator[Frame]:
         """Yields the newest frame of a session that runs, as a viewer sees it: a slow loop misses frames. Ends by
-        `break`."""
+        `break`. `max_error_mm`: positions may be off by so much [mm] and come compressed, in a tenth of the bytes or less;
+        None: exact. FailedPrecondition if the decoder of compressed frames is not there."""
         self._do(self._describe([state_pb2.STATE_PART_BODIES]))
-        events = self._connection.open(self._watch_call(max_fps))
+        events = self._connection.open(self._watch_call(max_fps, max_error_mm))
         try:
             for event in events:
                 frame = self._noted(event)
@@ -230,6 +232,11 @@ class Session(SessionOperations):
     def physiology(self, presets: Sequence[str] = (), progress: jobs.Progress = None) -> jobs.Physiology:
         """Simulates the scene's breathing presets (a minute a preset) and compares them with published ranges."""
         return self._do(jobs.physiology(self._source, presets, progress))
+
+    def fit(self, landmarks: Landmarks, progress: jobs.Progress = None, **options: Any) -> Fit:
+        """Fits a person's breath to landmarks with the lungs of this session's scene, as phrenic.fit does; the session
+        itself does not move. `options`: modes, split, assimilate, scene_name, show_landmarks."""
+        return self._do(fitted(self._source, landmarks, options, progress))
 
     def compare(self, other: Union["Session", str, Path], body: str = "", **options: Any) -> jobs.Comparison:
         """Compares a body of this session, as it is now, with the same body of another session, or with a surface or

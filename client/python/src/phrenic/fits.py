@@ -1,0 +1,165 @@
+"""A person's lungs and breath from landmarks, fitted on the server with the numbers of `phrenic fit`.
+
+    found = phrenic.fit("pairs.csv", modes=12)
+    found.held_out_mm, found.parameters.where(determined=False)
+    with phrenic.Session(found.scene) as s: ...
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
+
+import numpy as np
+from google.protobuf import text_format
+
+from .call import LONG, Call, Operation
+from .errors import FailedPrecondition, InvalidArgument
+from .frame import vectors
+from .jobs import Progress
+from .names import fill, row
+from .operations import Scene, source_of
+from .table import Table
+from .v1 import fit_pb2, scene_pb2, session_pb2
+
+if TYPE_CHECKING:
+    from .server import Server
+
+Landmarks = Union[str, Path, np.ndarray, Sequence[Union[str, Path]]]
+"""A file of pairs, a pair of files (end exhale, end inhale), or an array (n, 6) in mm and LPS: places at end exhale and at
+end inhale."""
+
+COLUMNS = "exhale_x,exhale_y,exhale_z,inhale_x,inhale_y,inhale_z"
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted breath, and how far off it is on the half of the landmarks that was not fitted."""
+
+    message: fit_pb2.MotionFitResult
+    """All of it, as the API has it."""
+    parameters: Table
+    """A row a number: name, what, value_mm, standard_error_mm, spread_between_people_mm, determined."""
+    correlation: np.ndarray
+    """Of the numbers, (k, k)."""
+    baselines: Table
+    """Plain models, fitted to the same half: name, numbers, mean_mm, p95_mm."""
+    regions: Table
+    """Errors by thirds and halves of the lungs."""
+    lungs: Table
+    """How the scene's lungs were scaled and shifted."""
+    exhale: np.ndarray
+    """The landmarks at end exhale [m], (n, 3)."""
+    motion: np.ndarray
+    """From there to end inhale [m]."""
+    predicted: np.ndarray
+    """The same by the fit [m]."""
+    held_out: np.ndarray
+    """Indices of the landmarks that were not fitted."""
+
+    @property
+    def held_out_mm(self) -> float:
+        """Mean error of the half that was not fitted [mm]: of the fitted numbers alone."""
+        return self.message.held_out.mean_mm
+
+    @property
+    def doubts(self) -> list[str]:
+        """Warnings about axes that the landmarks do not determine."""
+        return list(self.message.doubts)
+
+    @property
+    def scene(self) -> scene_pb2.Scene:
+        """The person's lungs and breath: phrenic.Session(fit.scene). FailedPrecondition if no breath moves so."""
+        if not self.message.HasField("scene"):
+            raise FailedPrecondition(self.message.scene_problem)
+        return self.message.scene
+
+    def to_scene(self, path: Union[str, Path]) -> None:
+        """Writes `scene` as a file, NAME.textproto."""
+        if Path(path).suffix != ".textproto":
+            raise InvalidArgument(f"{path}: a scene's file is NAME.textproto")
+        Path(path).write_text(text_format.MessageToString(self.scene), encoding="utf-8")
+
+    def to_json(self, path: Union[str, Path, None] = None) -> str:
+        """Returns the numbers as JSON, without landmarks and scene, and writes them to `path`."""
+        tables = {name: list(getattr(self, name)) for name in ("parameters", "baselines", "regions", "lungs")}
+        errors = {name: row(getattr(self.message, name)) for name in ("fitting", "held_out", "assimilated")
+                  if self.message.HasField(name)}  # fmt: skip
+        numbers = {**row(self.message), "correlation": self.correlation.tolist(), **errors, **tables}
+        text = json.dumps(numbers, indent=1)
+        if path is not None:
+            Path(path).write_text(text, encoding="utf-8")
+        return text
+
+
+def fit(
+    landmarks: Landmarks,
+    scene: Scene = "thorax",
+    *,
+    modes: int = 8,
+    split: int = 1,
+    assimilate: bool = False,
+    scene_name: str = "",
+    show_landmarks: bool = False,
+    resolution_mm: Optional[float] = None,
+    progress: Progress = None,
+    server: Optional["Server"] = None,
+) -> Fit:
+    """Fits a person's breath to landmarks, on the server; the numbers are those of `phrenic fit` with the same landmarks
+    and options. `scene`: its lungs are moved onto the person's. `modes`: 8 or 12 numbers. `split`: seed of the half that
+    is fitted. `assimilate`: adds the smallest elastic deformation. `scene_name`: of the person's scene, which has up to
+    400 landmarks with `show_landmarks`. InvalidArgument names the file and the line. A `progress` that raises ends the fit."""
+    if server is None:
+        from .server import default_server
+
+        server = default_server()
+    options = {"modes": modes, "split": split, "assimilate": assimilate, "scene_name": scene_name,
+               "show_landmarks": show_landmarks}  # fmt: skip
+    return server.connection.run(fitted(source_of(scene, resolution_mm), landmarks, options, progress))
+
+
+def fitted(
+    source: session_pb2.SceneSource, landmarks: Landmarks, options: Mapping[str, Any], progress: Progress
+) -> Operation[Fit]:
+    """Fits, and returns the result."""
+    request = fill(fit_pb2.FitMotionRequest(source=source, landmarks=_files(landmarks)), options)
+    results: list[fit_pb2.MotionFitResult] = []
+
+    def note(event: fit_pb2.FitMotionResponse) -> None:
+        if event.HasField("result"):
+            results.append(event.result)
+        elif progress:
+            progress(event.progress.done, event.progress.doing)
+
+    yield Call("FitService.FitMotion", request, LONG, note)
+    return _fit_of(results[-1])
+
+
+def _files(landmarks: Landmarks) -> list[fit_pb2.LandmarkFile]:
+    """Returns the landmarks as the server takes them."""
+    if isinstance(landmarks, np.ndarray):
+        if landmarks.ndim != 2 or landmarks.shape[1] != 6:
+            raise InvalidArgument(f"landmarks: an array of shape {landmarks.shape} is not (n, 6): {COLUMNS} in mm")
+        lines = (",".join(repr(float(number)) for number in row) for row in landmarks)
+        return [fit_pb2.LandmarkFile(name="landmarks", content="\n".join((COLUMNS, *lines)).encode())]
+    paths = [landmarks] if isinstance(landmarks, (str, Path)) else landmarks
+    return [_file(Path(path)) for path in paths]
+
+
+def _file(path: Path) -> fit_pb2.LandmarkFile:
+    try:
+        return fit_pb2.LandmarkFile(name=path.name, content=path.read_bytes())
+    except OSError as error:
+        raise InvalidArgument(f"{path}: {error.strerror}") from None
+
+
+def _fit_of(result: fit_pb2.MotionFitResult) -> Fit:
+    count = len(result.parameters)
+    places = (vectors(part, "<f8") for part in (result.points.exhale, result.points.motion, result.points.predicted))
+    return Fit(
+        result, Table.of(result.parameters), np.array(result.correlation).reshape(count, count),
+        Table.of(result.baselines), Table.of(result.regions), Table.of(result.lungs), *places,
+        np.array(result.points.held_out, dtype=int),
+    )  # fmt: skip

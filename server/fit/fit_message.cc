@@ -1,0 +1,99 @@
+#include "server/fit/fit_message.h"
+
+#include <bit>
+#include <cstddef>
+#include <string>
+
+namespace phrenic::fit {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "FitPoints are little-endian");
+
+constexpr const char* kLungNames[] = {"right", "left"};
+
+double Millimetres(double metres) { return 1000 * metres; }
+
+void SetError(const ErrorSummary& error, v1::FitError& message) {
+  message.set_mean_mm(Millimetres(error.mean));
+  message.set_p95_mm(Millimetres(error.p95));
+}
+
+void AddParameters(const MotionFit& fit, v1::MotionFitResult& result) {
+  for (const FittedNumber& each : fit.parameters) {
+    v1::FittedAmplitude& parameter = *result.add_parameters();
+    parameter.set_name(each.name);
+    parameter.set_what(each.what);
+    parameter.set_value_mm(Millimetres(each.value));
+    parameter.set_standard_error_mm(Millimetres(each.standard_error));
+    parameter.set_spread_between_people_mm(Millimetres(each.spread));
+    parameter.set_determined(each.determined);
+  }
+  for (Eigen::Index i = 0; i < fit.correlation.rows(); ++i) {
+    for (Eigen::Index j = 0; j < fit.correlation.cols(); ++j) result.add_correlation(fit.correlation(i, j));
+  }
+}
+
+void AddErrors(const MotionFit& fit, v1::MotionFitResult& result) {
+  SetError(fit.fitting, *result.mutable_fitting());
+  SetError(fit.held_out, *result.mutable_held_out());
+  if (fit.assimilated) SetError(*fit.assimilated, *result.mutable_assimilated());
+  for (const Baseline& each : fit.baselines) {
+    v1::FitBaseline& baseline = *result.add_baselines();
+    baseline.set_name(each.name);
+    baseline.set_numbers(each.numbers);
+    baseline.set_mean_mm(Millimetres(each.held_out.mean));
+    baseline.set_p95_mm(Millimetres(each.held_out.p95));
+  }
+  for (const RegionError& each : fit.regions) {
+    v1::FitRegion& region = *result.add_regions();
+    region.set_name(each.name);
+    region.set_points(each.points);
+    region.set_motion_mm(Millimetres(each.motion));
+    region.set_mean_mm(Millimetres(each.error.mean));
+    region.set_p95_mm(Millimetres(each.error.p95));
+  }
+}
+
+void AddLungs(const RegisteredLungs& registered, v1::MotionFitResult& result) {
+  result.set_gap_x_mm(Millimetres(registered.gap));
+  for (const std::string& doubt : registered.doubts) result.add_doubts(doubt);
+  for (const Side side : {kRight, kLeft}) {
+    const Registration& registration = registered.lungs[side];
+    v1::RegisteredLung& lung = *result.add_lungs();
+    lung.set_lung(kLungNames[side]);
+    lung.set_points(registered.points[side]);
+    lung.set_scale_x(registration.scale.x());
+    lung.set_scale_y(registration.scale.y());
+    lung.set_scale_z(registration.scale.z());
+    lung.set_shift_x_mm(Millimetres(registration.shift.x()));
+    lung.set_shift_y_mm(Millimetres(registration.shift.y()));
+    lung.set_shift_z_mm(Millimetres(registration.shift.z()));
+    lung.set_outside(registration.outside);
+    lung.set_farthest_mm(Millimetres(registration.farthest));
+  }
+}
+
+std::string BytesOf(const Points& points) {
+  return {reinterpret_cast<const char*>(points.data()), sizeof(double) * static_cast<std::size_t>(points.size())};
+}
+
+}  // namespace
+
+v1::MotionFitResult FitMessage(const MotionFit& fit, const FitOptions& options) {
+  v1::MotionFitResult result;
+  result.set_modes(options.numbers);
+  result.set_split(static_cast<std::int64_t>(options.split));
+  AddErrors(fit, result);
+  AddParameters(fit, result);
+  result.set_descent_mm(Millimetres(fit.descent));
+  result.set_volume_change_l(1000 * fit.volume);
+  AddLungs(fit.registered, result);
+  v1::FitPoints& points = *result.mutable_points();
+  points.set_exhale(BytesOf(fit.exhale));
+  points.set_motion(BytesOf(fit.motion));
+  points.set_predicted(BytesOf(fit.predicted));
+  points.mutable_held_out()->Add(fit.halves.held_out.begin(), fit.halves.held_out.end());
+  return result;
+}
+
+}  // namespace phrenic::fit

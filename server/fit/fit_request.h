@@ -1,0 +1,36 @@
+// A fit as a server is asked for it: v1.FitMotionRequest to v1.MotionFitResult, with the numbers of `phrenic fit`.
+#ifndef PHRENIC_SERVER_FIT_FIT_REQUEST_H_
+#define PHRENIC_SERVER_FIT_FIT_REQUEST_H_
+
+#include <functional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "phrenic/v1/fit.pb.h"
+#include "server/fit/motion_fit.h"
+#include "server/fit/scene_lungs.h"
+
+namespace phrenic::fit {
+
+inline constexpr int kMostPairs = 20'000;  // of one request: a fit of so many takes 3 s
+
+// A checked request.
+struct RequestedFit {
+  Landmarks landmarks;
+  FitOptions options;
+  std::string scene_name;
+  std::string source;  // the files' names, for the scene's description
+  bool show_landmarks = false;
+};
+
+// Parses the landmarks and checks the options. INVALID_ARGUMENT "name:line: ...", or names the field. Requires:
+// schema::Validate. Thread-safe, like FitRequested.
+absl::StatusOr<RequestedFit> ReadFitRequest(const v1::FitMotionRequest& request);
+
+// Fits. The errors of FitMotion.
+absl::StatusOr<v1::MotionFitResult> FitRequested(const RequestedFit& requested, const SceneLungs& lungs,
+                                                 const FitProgress& progress);
+
+}  // namespace phrenic::fit
+
+#endif  // PHRENIC_SERVER_FIT_FIT_REQUEST_H_

@@ -1,0 +1,21 @@
+// Any bytes as a FitMotionRequest give landmarks within the limits and valid options, or an error.
+#include "server/fit/fit_request.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+#include "server/schema/schema.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  phrenic::v1::FitMotionRequest request;
+  if (!request.ParseFromArray(data, static_cast<int>(size)) || !phrenic::schema::Validate(request).ok()) return 0;
+  const auto requested = phrenic::fit::ReadFitRequest(request);
+  if (!requested.ok()) return 0;
+  const auto& landmarks = requested->landmarks;
+  if (landmarks.size() == 0 || landmarks.size() > phrenic::fit::kMostPairs) std::abort();
+  if (!landmarks.exhale.allFinite() || !landmarks.motion.allFinite()) std::abort();
+  if (requested->options.numbers != 8 && requested->options.numbers != 12) std::abort();
+  if (requested->scene_name.empty() || requested->source.empty()) std::abort();
+  return 0;
+}
