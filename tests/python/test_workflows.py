@@ -17,7 +17,7 @@ SNAKEFILE = REPOSITORY / "client" / "examples" / "snakemake" / "Snakefile"
 class SnakemakeTest(unittest.TestCase):
     def setUp(self):
         if not shutil.which("snakemake"):
-            self.skipTest("there is no snakemake: apt install snakemake")
+            self.skipTest("there is no snakemake: apt install snakemake (669 MB with what it needs, so deploy/test does not)")
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
