@@ -18,7 +18,8 @@ namespace http = boost::beast::http;
 
 // The policy in the page itself (web/vite.config.ts) and, appended, the origins that may frame it.
 constexpr char kPolicy[] =
-    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' data: blob:; "
+    "connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors ";
 
 bool IsForwarded(const std::string& name) {
