@@ -86,11 +86,15 @@ TEST(FreeCage, PartsThatAreHeldChangeNothing) {
       std::string(kContact) + kPressures + kChestWall + "parameters { intercostal_activation: 1 } ";
   const auto without = CompileText(FreeCage(forces)), with = CompileText(FreeCage(forces, kParts));
   ASSERT_NE(with, nullptr);
-  const State one = RunTo(*without, 0.3, 1e-3), other = RunTo(*with, 0.3, 1e-3);
+  const State one = RunTo(*without, 0.1, 1e-3), other = RunTo(*with, 0.1, 1e-3);
   const Eigen::Index vertices = without->coordinates.front().vertex;
   EXPECT_LT((one.x - other.x.leftCols(one.x.cols())).leftCols(vertices).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_GT((one.x - without->rest).leftCols(vertices).norm(), 1e-4);
 }
+
+constexpr char kTissue[] =
+    "forces { membrane { bodies: 'sheet' youngs_modulus: 1e6 poissons_ratio: 0.3 thickness: 0.003 } } "
+    "forces { friction { bodies: 'sheet' rate: 20 } } ";
 
 const Coordinate& Named(const Model& model, std::string_view name) {
   return *std::find_if(model.coordinates.begin(), model.coordinates.end(),
@@ -99,11 +103,11 @@ const Coordinate& Named(const Model& model, std::string_view name) {
 
 // A segment of broken ribs follows the pressure inside: a suction draws it in while the muscles raise the cage.
 TEST(FreeCage, ABrokenSegmentMovesAgainstTheCage) {
-  const std::string forces = std::string(kPressures) + kChestWall;
+  const std::string forces = std::string(kPressures) + kChestWall + kTissue;
   const auto after = [&](const std::string& changes) {
     const auto model =
         CompileText(FreeCage(forces + "parameters { intercostal_activation: 1 " + changes + "} ", kParts));
-    const State state = RunTo(*model, 1, 1e-3);
+    const State state = RunTo(*model, 1, 2e-4);
     const auto value = [&](const char* name) { return Named(*model, name).Value(state.x); };
     return std::array{value("pump handle"), value("right segment"), value("left segment"), value("cage sides")};
   };
@@ -125,7 +129,7 @@ TEST(FreeCage, ASideWithoutMusclesStaysBehind) {
   const double right = apart("right_intercostals: 0 "), left = apart("left_intercostals: 0 ");
   EXPECT_LT(right, -0.02);
   EXPECT_NEAR(right, -left, 1e-9 * left);
-  EXPECT_LT(apart("right_cage_compliance: 0.2 "), -0.02);
+  EXPECT_LT(apart("right_cage_compliance: 0.2 "), -0.002);
 }
 
 TEST(FreeCage, SegmentsOfRibsThatTheSceneLacksAreRefused) {
