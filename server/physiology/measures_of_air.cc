@@ -88,7 +88,9 @@ double PleuralRise(const Recording& r, const Recording&) {
 }
 
 double FlowOut(const Recording& r, const Recording&) { return -kLitres * Least(r, kFlow); }
-double FlowOutShare(const Recording& r, const Recording& other) { return Least(r, kFlow) / Least(other, kFlow); }
+double PleuralRiseShare(const Recording& r, const Recording& other) {
+  return PleuralRise(r, r) / PleuralRise(other, other);
+}
 
 double FlowShare(const Recording& r, const Recording& other) { return Greatest(r, kFlow) / Greatest(other, kFlow); }
 
