@@ -151,14 +151,17 @@ TEST(LawsOfABreath, MusclesDoTheWorkThatIsStoredAndLost) {
   const auto model = CompileThorax(8, false);
   for (const std::string preset : {"quiet", "deep", "flail-chest", "kyphoscoliosis"}) {
     const v1::Parameters parameters = Preset(*model, preset);
-    State state = model->InitialState();
+    // At the whole step 1.1 and 1.2 % are missing in the last two, half of that at half of it.
+    const bool healthy = preset == "quiet" || preset == "deep";
+    const double step = (healthy ? 1 : 0.5) * parameters.time_step();
+    // A cage that is asymmetric at rest first moves there.
+    const double start = parameters.cage_tilt() == 0 ? 0 : parameters.breath_length();
+    State state = RunFor(*model, parameters, start, step);
     Workspace work = model->MakeWorkspace();
     Works works(*model, parameters);
     works.Begin(state);
-    // At the whole step 1.1 and 1.2 % are missing in the last two, half of that at half of it.
-    const double step = (preset == "quiet" || preset == "deep" ? 1 : 0.5) * parameters.time_step();
     double most = 0;
-    while (state.time < parameters.breath_length()) {
+    while (state.time < start + parameters.breath_length()) {
       ASSERT_TRUE(Step(*model, parameters, step, state, work).ok());
       works.Add(state);
       most = std::max(most, works.muscles);
