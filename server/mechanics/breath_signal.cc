@@ -34,6 +34,11 @@ BreathSignal WithShares(double inspiratory, double pause, double phase) {
   return signal;
 }
 
+bool GlottisIsClosed(const v1::Parameters& parameters, double phase) {
+  const double since_peak = phase - std::floor(phase) - parameters.inspiratory_share();
+  return since_peak >= 0 && since_peak < parameters.glottis_share();
+}
+
 BreathSignal Trace(const google::protobuf::RepeatedField<double>& values, double phase) {
   if (values.empty()) return {};
   const double at = (phase - std::floor(phase)) * values.size();
@@ -44,8 +49,11 @@ BreathSignal Trace(const google::protobuf::RepeatedField<double>& values, double
 
 BreathSignal OfWaveform(const v1::Breath& breath, const v1::Parameters& parameters, double phase) {
   switch (breath.waveform()) {
-    case v1::WAVEFORM_RAISED_COSINE:
-      return WithShares(parameters.inspiratory_share(), parameters.pause_share(), phase);
+    case v1::WAVEFORM_RAISED_COSINE: {
+      BreathSignal signal = WithShares(parameters.inspiratory_share(), parameters.pause_share(), phase);
+      signal.glottis_closed = GlottisIsClosed(parameters, phase);
+      return signal;
+    }
     case v1::WAVEFORM_TRACE:
       return Trace(breath.trace(), phase);
     default:

@@ -20,6 +20,7 @@ struct EvalContext {
   double breath;                     // the waveform's signal, -1 to 1; 0 at rest
   double breath_rate;                // its time derivative [1/s]
   double expiration;                 // the signal of the expiratory muscles, 0 to 1
+  bool airway_closed;                // by the live parameter of that name or by the glottis
   const v1::Parameters& parameters;  // every field set
   const ConstPoints x;               // positions, 3 x n [m]
   const ConstPoints v;               // velocities, 3 x n [m/s]
@@ -27,6 +28,7 @@ struct EvalContext {
   const std::vector<VertexPull>& pulls;
   const ScalarState& scalars;  // generalised coordinates
   Scratch scratch = {};        // memory for intermediate results
+  bool releases_all = false;   // forces move even what a live parameter holds: where forces are balanced at rest
   // Results that several elements share at this moment; null if not available.
   ChamberReadings* readings = nullptr;          // of chambers read so far (breathing/chamber.h)
   const PoseMatrices* pose_matrices = nullptr;  // one per pose (skinning/pose_matrices.h)

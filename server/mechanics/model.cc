@@ -54,6 +54,7 @@ EvalContext MakeEvalContext(const Model& model, const v1::Parameters& parameters
           .breath = signal.value,
           .breath_rate = signal.slope / parameters.breath_length(),
           .expiration = signal.expiration,
+          .airway_closed = parameters.airway_closed() || signal.glottis_closed,
           .parameters = parameters,
           .x = state.x,
           .v = state.v,

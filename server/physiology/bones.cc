@@ -24,6 +24,15 @@ double Quantile(std::vector<double> values, double share) {
   return *nth;
 }
 
+// Returns how far the outermost point of a rib has moved outwards from rest [m].
+double OutwardShift(const Model& model, const State& state, int rib) {
+  const BodyModel& body = model.bodies[rib];
+  const double side = body.anatomy.side() == v1::SIDE_LEFT ? 1 : -1;
+  Eigen::Index outermost = 0;
+  (side * body.mesh.vertices.row(0)).maxCoeff(&outermost);
+  return side * (Placed(model, state, rib)(0, outermost) - body.mesh.vertices(0, outermost));
+}
+
 }  // namespace
 
 Eigen::Vector3d SternumShift(const Model& model, const Parts& parts, const State& from, const State& to) {
@@ -34,12 +43,17 @@ Eigen::Vector3d SternumShift(const Model& model, const Parts& parts, const State
 double LowerRibShift(const Model& model, const Parts& parts, const State& state) {
   Mean mean;
   for (const int b : parts.ribs) {
-    const v1::Anatomy& anatomy = model.bodies[b].anatomy;
-    if (anatomy.number() < 7 || anatomy.number() > 10) continue;
-    const double side = anatomy.side() == v1::SIDE_LEFT ? 1 : -1;
-    Eigen::Index outermost = 0;
-    (side * model.bodies[b].mesh.vertices.row(0)).maxCoeff(&outermost);
-    mean.Add(side * (Placed(model, state, b)(0, outermost) - model.bodies[b].mesh.vertices(0, outermost)));
+    const int number = model.bodies[b].anatomy.number();
+    if (number >= 7 && number <= 10) mean.Add(OutwardShift(model, state, b));
+  }
+  return mean.Value();
+}
+
+double MiddleRibShift(const Model& model, const Parts& parts, const State& state, v1::Side side) {
+  Mean mean;
+  for (const int b : parts.ribs) {
+    const v1::Anatomy& rib = model.bodies[b].anatomy;
+    if (rib.side() == side && rib.number() >= 4 && rib.number() <= 7) mean.Add(OutwardShift(model, state, b));
   }
   return mean.Value();
 }

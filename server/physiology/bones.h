@@ -13,6 +13,8 @@ Eigen::Vector3d SternumShift(const Model& model, const Parts& parts, const State
 
 // Returns the mean outward displacement of the outermost points of ribs 7 to 10 from rest [m]; kNone without ribs.
 double LowerRibShift(const Model& model, const Parts& parts, const State& state);
+// Returns the same of ribs 4 to 7 of one side.
+double MiddleRibShift(const Model& model, const Parts& parts, const State& state, v1::Side side);
 
 // Points of the lungs at rest [m], and how far each moves down [m].
 struct LoweredPoints {

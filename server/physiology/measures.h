@@ -46,6 +46,10 @@ double SternumVentral(const Recording& r, const Recording&);
 double SternumCranial(const Recording& r, const Recording&);
 double RibsOutward(const Recording& r, const Recording&);
 double RibsDrawnIn(const Recording& r, const Recording&);  // greatest inward motion
+// Of ribs 4 to 7 between the beginning and the peak: right ones inwards, left ones outwards [mm], right of left [%].
+double RightRibsIn(const Recording& r, const Recording&);
+double LeftRibsOut(const Recording& r, const Recording&);
+double RightRibsShare(const Recording& r, const Recording&);
 double LungLeast(const Recording& r, const Recording&);
 double LungApex(const Recording& r, const Recording&);
 double LungBase(const Recording& r, const Recording&);
@@ -55,6 +59,7 @@ double TidalVolume(const Recording& r, const Recording&);               // great
 double InspiredVolume(const Recording& r, const Recording&);            // greatest minus that at the beginning [l]
 double VolumeAtRest(const Recording& r, const Recording&);              // at the beginning [l]
 double VolumeAbove(const Recording& r, const Recording& other);         // at the beginning, over the other's [l]
+double InspiredShare(const Recording& r, const Recording& other);       // inspired volume, of the other's [%]
 double TidalVolumeLost(const Recording& r, const Recording& other);     // of the other's [%]
 double AbdominalShare(const Recording& r, const Recording&);            // of the volume breathed in [%]
 double AbdominalShareLost(const Recording& r, const Recording& other);  // [points]
@@ -63,6 +68,9 @@ double PdiSwing(const Recording& r, const Recording&);                  // great
 double PdiShare(const Recording& r, const Recording& other);            // of the other's swing [%]
 double PleuralFall(const Recording& r, const Recording&);               // [cmH2O]
 double PleuralFallShare(const Recording& r, const Recording& other);    // [1]
+double PleuralRise(const Recording& r, const Recording&);               // over that at the beginning [cmH2O]
+double FlowOut(const Recording& r, const Recording&);                   // greatest expiratory flow [l/s]
+double PleuralRiseShare(const Recording& r, const Recording& other);    // of the other's [1]
 double FlowShare(const Recording& r, const Recording& other);           // greatest inspiratory flow, of the other's [1]
 double WorkShare(const Recording& r, const Recording& other);           // of a litre breathed in, over the other's [1]
 double LoopShare(const Recording& r, const Recording& other);           // area of the pressure-volume loop a litre [1]

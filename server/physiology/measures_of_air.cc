@@ -54,6 +54,10 @@ double TidalVolumeLost(const Recording& r, const Recording& other) {
   return 100 * (1 - TidalVolume(r, r) / TidalVolume(other, other));
 }
 
+double InspiredShare(const Recording& r, const Recording& other) {
+  return 100 * InspiredVolume(r, r) / InspiredVolume(other, other);
+}
+
 double AbdominalShare(const Recording& r, const Recording&) {
   const double lungs = Gained(r, kVolume);
   return lungs > 0 ? 100 * VolumeOfAbdomen(r) / lungs : kNone;
@@ -77,6 +81,15 @@ double PleuralFall(const Recording& r, const Recording&) {
 }
 double PleuralFallShare(const Recording& r, const Recording& other) {
   return PleuralFall(r, r) / PleuralFall(other, other);
+}
+
+double PleuralRise(const Recording& r, const Recording&) {
+  return (Greatest(r, kPleural) - r.of[kPleural].front()) / kCentimetreOfWater;
+}
+
+double FlowOut(const Recording& r, const Recording&) { return -kLitres * Least(r, kFlow); }
+double PleuralRiseShare(const Recording& r, const Recording& other) {
+  return PleuralRise(r, r) / PleuralRise(other, other);
 }
 
 double FlowShare(const Recording& r, const Recording& other) { return Greatest(r, kFlow) / Greatest(other, kFlow); }

@@ -29,6 +29,11 @@ double Across(const Recording& r, double share) {
 
 LungShift Lungs(const Recording& r) { return ShiftOf(LoweredInBreath(r)); }
 
+// Returns how far ribs move out between the beginning and the peak [mm].
+double OutwardBy(const Recording& r, Quantity ribs) {
+  return kMillimetresOfMetre * (r.of[ribs][r.peak_sample] - r.of[ribs].front());
+}
+
 }  // namespace
 
 double Shortening(const Recording& r, const Recording&) {
@@ -56,13 +61,17 @@ double Thickening(const Recording& r, const Recording&) {
 double SternumVentral(const Recording& r, const Recording&) { return -Sternum(r).y(); }
 double SternumCranial(const Recording& r, const Recording&) { return Sternum(r).z(); }
 
-double RibsOutward(const Recording& r, const Recording&) {
-  return kMillimetresOfMetre * (r.of[kLowerRibs][r.peak_sample] - r.of[kLowerRibs].front());
-}
+double RibsOutward(const Recording& r, const Recording&) { return OutwardBy(r, kLowerRibs); }
 
 double RibsDrawnIn(const Recording& r, const Recording&) {
   const auto& out = r.of[kLowerRibs];
   return kMillimetresOfMetre * (out.front() - *std::min_element(out.begin(), out.end()));
+}
+
+double RightRibsIn(const Recording& r, const Recording&) { return -OutwardBy(r, kRightRibs); }
+double LeftRibsOut(const Recording& r, const Recording&) { return OutwardBy(r, kLeftRibs); }
+double RightRibsShare(const Recording& r, const Recording&) {
+  return kPercent * OutwardBy(r, kRightRibs) / OutwardBy(r, kLeftRibs);
 }
 
 double LungLeast(const Recording& r, const Recording&) { return kMillimetresOfMetre * Lungs(r).least; }

@@ -37,6 +37,8 @@ class Recorder {
     const auto heights = subject_.columns.Heights(Placed(model, state, subject_.parts.sheet));
     std::copy(heights.begin(), heights.end(), now.begin() + kRightApex);
     now[kLowerRibs] = LowerRibShift(model, subject_.parts, state);
+    now[kRightRibs] = MiddleRibShift(model, subject_.parts, state, v1::SIDE_RIGHT);
+    now[kLeftRibs] = MiddleRibShift(model, subject_.parts, state, v1::SIDE_LEFT);
     Keep(time, now, at.breath, state);
     if (each_) each_(time, at);
     LookForFlaws(time, state);

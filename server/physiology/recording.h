@@ -46,6 +46,8 @@ enum Quantity {
   kLeftApex,
   kLeftBack,
   kLowerRibs,  // outward displacement of ribs 7 to 10 [m]
+  kRightRibs,  // of ribs 4 to 7 of one side [m]
+  kLeftRibs,
   kQuantities
 };
 

@@ -13,6 +13,9 @@ constexpr ChangedBreath kBreaths[] = {
     {"sniff, COPD", "sniff", "lung_compliance: 1.6 trapped_air: 0.0008"},
     {"deep, obesity", "deep", "abdominal_load: 700 abdominal_compliance: 0.6 chest_wall_compliance: 0.6"},
     {"deep, ascites", "deep", "abdominal_load: 1000 abdominal_compliance: 0.4"},
+    {"deep, kyphoscoliosis", "deep", "chest_wall_compliance: 0.35 right_cage_compliance: 0.3 cage_tilt: -0.2"},
+    {"cough, weak abdominal muscles", "cough", "expiratory_activation: 0.1"},
+    {"cough, open glottis", "cough", "glottis_share: 0"},
 };
 
 constexpr Row kChangedRows[] = {
@@ -32,6 +35,15 @@ constexpr Row kChangedRows[] = {
     {"ascites", "volume at rest over health's", "l", -0.8, -0.2, &VolumeAbove, kAir, kRange, "quiet"},
     {"ascites", "right dome at rest over health's", "mm", 1, 60, &ApexAbove, kAir, kSign, "quiet"},
     {"deep, ascites", "descent of the right dome, of health's", "%", 0, 99, &DescentShare, kAir, kSign, "deep"},
+    {"flail-chest", "right ribs 4-7 drawn in", "mm", 1, 30, &RightRibsIn, kAir, kSign},
+    {"flail-chest", "left ribs 4-7 outward", "mm", 0.5, 30, &LeftRibsOut, kAir, kSign},
+    {"kyphoscoliosis", "right ribs 4-7 outward, of left ones", "%", -20, 70, &RightRibsShare, kAir, kSign},
+    {"deep, kyphoscoliosis", "volume breathed in, of health's", "%", 30, 75, &InspiredShare, kAir, kRange, "deep"},
+    {"cough", "greatest flow out", "l/s", 4, 15, &FlowOut, kAir, "peak cough flow of adults"},
+    {"cough", "pleural pressure, rise", "cmH2O", 40, 250, &PleuralRise, kAir, kRange},
+    {"cough, weak abdominal muscles", "greatest flow out", "l/s", 0, 4.5, &FlowOut, kAir, "under 270 l/min is weak"},
+    {"cough, open glottis", "pleural pressure, rise, of the cough's", "1", 0, 0.95, &PleuralRiseShare, kAir, kSign,
+     "cough"},
     {"quiet, stiff lungs", "tidal volume lost", "%", 25, 60, &TidalVolumeLost, kAir, kRange, "quiet"},
     {"quiet, stiff lungs", "descent of the right dome, of health's", "%", 0, 99, &DescentShare, kAir, kSign, "quiet"},
     {"quiet, narrow airways", "greatest flow in, of health's", "1", 0, 0.95, &FlowShare, kAir, kSign, "quiet"},

@@ -70,13 +70,15 @@ TEST(Parameters, ThatNothingAnswersToAreReported) {
     return std::ranges::any_of(ModeParameters(), [&](const ModeParameter& each) { return each.name == name; });
   });
   EXPECT_THAT(
-      named, testing::UnorderedElementsAre(
-                 "rib_motion", "pump_handle", "bucket_handle", "apply_muscles", "hyperinflation",
-                 "diaphragm_activation", "right_activation", "left_activation", "apply_links", "intercostal_activation",
-                 "chest_wall_compliance", "muscle_strength", "expiratory_activation", "airway_resistance",
-                 "lung_compliance", "abdominal_compliance", "abdominal_load", "airway_pressure", "ventilator_pressure",
-                 "airway_closed", "trapped_air", "pneumothorax_right", "pneumothorax_left", "pleural_fluid_right",
-                 "pleural_fluid_left", "posture", "inspiratory_share", "pause_share", "waxing"));
+      named,
+      testing::UnorderedElementsAre(
+          "rib_motion", "pump_handle", "bucket_handle", "apply_muscles", "hyperinflation", "diaphragm_activation",
+          "right_activation", "left_activation", "apply_links", "intercostal_activation", "chest_wall_compliance",
+          "muscle_strength", "expiratory_activation", "airway_resistance", "lung_compliance", "abdominal_compliance",
+          "abdominal_load", "airway_pressure", "ventilator_pressure", "airway_closed", "trapped_air",
+          "pneumothorax_right", "pneumothorax_left", "pleural_fluid_right", "pleural_fluid_left", "posture",
+          "inspiratory_share", "pause_share", "waxing", "glottis_share", "right_intercostals", "left_intercostals",
+          "right_cage_compliance", "left_cage_compliance", "cage_tilt", "flail_right", "flail_left"));
   EXPECT_THAT(idle("constraints { length_limits { body: 'sheet' at_most_ratio: 2 } }"),
               testing::Not(testing::Contains("apply_links")));
   EXPECT_THAT(idle("forces { action_line { bodies: 'sheet' origin {} direction { z: 1 } radius: 3 force: 1 } }"),

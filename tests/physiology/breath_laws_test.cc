@@ -149,15 +149,20 @@ class Works {
 // mediastinum, cage and tissue. Of the forces on the insertion and on the cage too.
 TEST(LawsOfABreath, MusclesDoTheWorkThatIsStoredAndLost) {
   const auto model = CompileThorax(8, false);
-  for (const std::string preset : {"quiet", "deep"}) {
+  for (const std::string preset : {"quiet", "deep", "flail-chest", "kyphoscoliosis"}) {
     const v1::Parameters parameters = Preset(*model, preset);
-    State state = model->InitialState();
+    // At the whole step 1.1 and 1.2 % are missing in the last two, half of that at half of it.
+    const bool healthy = preset == "quiet" || preset == "deep";
+    const double step = (healthy ? 1 : 0.5) * parameters.time_step();
+    // A cage that is asymmetric at rest first moves there.
+    const double start = parameters.cage_tilt() == 0 ? 0 : parameters.breath_length();
+    State state = RunFor(*model, parameters, start, step);
     Workspace work = model->MakeWorkspace();
     Works works(*model, parameters);
     works.Begin(state);
     double most = 0;
-    while (state.time < parameters.breath_length()) {
-      ASSERT_TRUE(Step(*model, parameters, parameters.time_step(), state, work).ok());
+    while (state.time < start + parameters.breath_length()) {
+      ASSERT_TRUE(Step(*model, parameters, step, state, work).ok());
       works.Add(state);
       most = std::max(most, works.muscles);
       const double sum = works.lost + works.Gained(state);
@@ -175,7 +180,7 @@ TEST(LawsOfABreath, HalfTheStepIsTheSameBreath) {
   const double dt = parameters.time_step();
   for (const double seconds : {1.0, 2.0}) {
     const double apart = (RunFor(*model, parameters, seconds, dt).x - RunFor(*model, parameters, seconds, dt / 2).x)
-                             .leftCols(model->rest.cols() - 1)
+                             .leftCols(model->coordinates.front().vertex)
                              .colwise()
                              .norm()
                              .maxCoeff();
@@ -206,7 +211,7 @@ TEST(LawsOfABreath, FinerMeshesBreatheAlike) {
 // restored one after the other, in an order that the mirror does not turn round.
 TEST(LawsOfABreath, TheMirrorImageBreathesAsTheMirrorImage) {
   const auto model = CompileThorax(8, false), image = CompileThorax(8, true);
-  const Eigen::Index vertices = model->rest.cols() - 1;
+  const Eigen::Index vertices = model->coordinates.front().vertex;  // those of coordinates follow
   for (const auto& [preset, most] : {std::pair("quiet", 5e-3), std::pair("palsy-right", 1e-2)}) {
     const v1::Parameters parameters = Preset(*model, preset);
     v1::Parameters swapped = parameters;
@@ -248,6 +253,10 @@ TEST(LawsOfABreath, ExtremeCasesStayFiniteOrStopHonestly) {
       {"lung compliance x 1000", [](auto& p) { p.set_lung_compliance(1000); }},
       {"abdominal compliance x 1000", [](auto& p) { p.set_abdominal_compliance(1000); }},
       {"cage compliance x 1000", [](auto& p) { p.set_chest_wall_compliance(1000); }},
+      {"all ribs broken", [](auto& p) { p.set_flail_right(1), p.set_flail_left(1), p.set_intercostal_activation(5); }},
+      {"cage asymmetric", [](auto& p) { p.set_cage_tilt(1), p.set_left_cage_compliance(100); }},
+      {"coughs at once", [](auto& p) { p.set_glottis_share(0.5), p.set_expiratory_activation(5); }},
+      {"ribs broken", nothing, [](auto& p) { p.set_flail_right(1); }},
       {"airway shut", nothing, [](auto& p) { p.set_airway_closed(true); }},
       {"pneumothorax", nothing, [](auto& p) { p.set_pneumothorax_right(1); }},
       {"step x 3", nothing, nothing, 3},

@@ -83,7 +83,7 @@ TEST_F(BreathingThorax, WithoutDriveNothingMoves) {
   parameters.set_diaphragm_activation(0);
   parameters.set_intercostal_activation(0);
   const Curves curves = Run(parameters, 10);
-  const Eigen::Index vertices = model_->rest.cols() - 1;  // the last one holds coordinates
+  const Eigen::Index vertices = model_->coordinates.front().vertex;  // those of coordinates follow
   EXPECT_LT((curves.last.x - model_->rest).leftCols(vertices).colwise().norm().maxCoeff(), 1e-4);
   EXPECT_LT(curves.Range("lung volume", 10), 1e-6);
 }
@@ -222,6 +222,45 @@ TEST_F(BreathingThorax, TrappedAirFillsTheLungsAndLeavesTheDomesLessToMove) {
               1e3 * with.Range("right dome", 3.5), 1e3 * without.Range("right dome", 3.5));
   EXPECT_GT(with.Least("lung volume", 3.5), without.Least("lung volume", 3.5) + 0.1 * kLitre);
   EXPECT_LT(with.Range("right dome", 3.5), without.Range("right dome", 3.5));
+}
+
+TEST_F(BreathingThorax, ACoughIsAShutGlottisThatOpensUnderPressure) {
+  const auto flow = [](const Curves& curves) { return -curves.Least("flow", 4) / kLitre; };
+  const auto pressure = [](const Curves& curves) {
+    const auto last = curves.Last("pleural pressure", 4);
+    return *std::max_element(last.begin(), last.end());
+  };
+  const Curves cough = Breathe("cough"), open = Breathe("cough", [](auto&p) { p.set_glottis_share(0); }),
+               weak = Breathe("cough", [](auto&p) { p.set_expiratory_activation(0); });
+  std::printf("cough, with an open glottis, without abdominal muscles: %.1f, %.1f, %.1f l/s; %.0f, %.0f, %.0f Pa\n",
+              flow(cough), flow(open), flow(weak), pressure(cough), pressure(open), pressure(weak));
+  EXPECT_GT(flow(cough), 4);
+  EXPECT_LT(pressure(open), 0.95 * pressure(cough));
+  EXPECT_LT(flow(weak), 0.5 * flow(cough));
+  EXPECT_LT(pressure(weak), 0.3 * pressure(cough));
+}
+
+// Where ribs follow the pressure instead of the muscles, more of the same drive is lost.
+TEST_F(BreathingThorax, BrokenRibsAreDrawnInWhileTheOthersRise) {
+  const Curves flail = Breathe("flail-chest"), whole = Breathe("flail-chest", [](auto&p) { p.set_flail_right(0); }),
+               other = Breathe("flail-chest", [](auto&p) { p.set_flail_right(0), p.set_flail_left(1); });
+  EXPECT_LT(flail.Least("right segment", 3), -0.05);
+  EXPECT_GT(flail.Range("bucket handle", 3), 0.1);
+  EXPECT_EQ(whole.Range("right segment", 3), 0);
+  EXPECT_EQ(flail.Range("left segment", 3), 0);
+  EXPECT_NEAR(other.Least("left segment", 3), flail.Least("right segment", 3), 0.2 * flail.Range("right segment", 3));
+  EXPECT_LT(flail.Range("lung volume", 3), 0.99 * whole.Range("lung volume", 3));
+}
+
+TEST_F(BreathingThorax, AnAsymmetricCageBreathesWithOneSide) {
+  const Curves bent = Breathe("kyphoscoliosis"), even = Breathe("kyphoscoliosis", [](auto&p) {
+                                                   p.set_right_cage_compliance(1);
+                                                   p.set_cage_tilt(0);
+                                                 });
+  EXPECT_LT(bent.of.at("sides apart").back(), -0.05) << "the right ribs rest lowered";
+  EXPECT_GT(bent.Range("sides apart", 3), 0.01);
+  EXPECT_EQ(even.Range("sides apart", 3), 0);
+  EXPECT_LT(bent.Range("lung volume", 3), even.Range("lung volume", 3));
 }
 
 TEST_F(BreathingThorax, UprightLungsRestFuller) {

@@ -78,7 +78,7 @@ TEST_F(Measures, ASheetThatWidensIsPiercedByTheRibs) {
   const auto subject = *Subject::Of(*model_);
   State state = model_->InitialState();
   EXPECT_EQ(subject->flaws.At(state)[physiology::kPiercingRibs], 0);
-  state.x.leftCols(state.x.cols() - 1).row(0) *= 1.15;
+  state.x.leftCols(model_->coordinates.front().vertex).row(0) *= 1.15;
   EXPECT_GT(subject->flaws.At(state)[physiology::kPiercingRibs], 10);
 }
 

@@ -10,7 +10,9 @@ namespace {
 
 constexpr int kTurns = kWallTurns, kHeights = kWallHeights;
 constexpr double kQuarter = kWallQuarter, kLeastRadius = kLeastWallRadius;
-constexpr int kLevels = 60;  // of the wall between a loop and its top
+constexpr double kStill = 3e-4;   // where the whole cage moves by less no part has weight [m]
+constexpr size_t kWholeCage = 4;  // of CageFit::Positions(): both coordinates where a part departs to
+constexpr int kLevels = 60;       // of the wall between a loop and its top
 
 // A measure of the azimuth, in [0, 4), and its derivatives by x and y.
 struct WallTurn {
@@ -54,34 +56,57 @@ double ConeOver(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen:
 
 }  // namespace
 
-absl::StatusOr<InnerWall> InnerWall::Make(const Points& rest, const std::vector<Points>& moved) {
+absl::StatusOr<InnerWall> InnerWall::Make(const Points& rest, const std::vector<Points>& moved,
+                                          const AllPartGrids& parts) {
   const auto grid = WallGrid::Find(rest);
   if (!grid.ok()) return grid.status();
   InnerWall wall(*grid);
   wall.rest_ = rest;
   wall.moved_ = moved;
+  wall.parts_ = parts;
   wall.bottom_ = rest(2, 0);
   wall.height_ = rest(2, grid->columns() * (grid->star_rows() - 1)) - wall.bottom_;
+  wall.WeighParts();
   wall.Tabulate();
   return wall;
 }
 
+// The part's displacement along that of the whole cage, where that is not small.
+void InnerWall::WeighParts() {
+  for (size_t part = 0; part < kCageParts; ++part) {
+    if (parts_[part].departed.empty()) continue;
+    const Points by_part = (parts_[part].departed[1] - parts_[part].departed[0]) / 2;
+    const Points whole = moved_[kWholeCage] - rest_;
+    weight_[part] = Points::Zero(3, rest_.cols());
+    for (Eigen::Index i = 0; i < rest_.cols(); ++i) {
+      const double still = kStill * kStill;
+      weight_[part](0, i) = by_part.col(i).dot(whole.col(i)) / (whole.col(i).squaredNorm() + still);
+    }
+  }
+}
+
 void InnerWall::Tabulate() {
   const CageFit fit;
-  radius_.resize(kTurns * kHeights);
-  for (auto& coefficient : change_) coefficient.resize(radius_.size());
+  shape_.radius.resize(kTurns * kHeights);
+  for (auto& coefficient : shape_.change) coefficient.resize(shape_.radius.size());
+  for (size_t part = 0; part < kCageParts; ++part) {
+    shape_.weight[part].resize(weight_[part].size() > 0 ? shape_.radius.size() : 0);
+  }
   for (int entry = 0; entry < kTurns * kHeights; ++entry) {
     const int row = entry / kTurns, turn = entry % kTurns;
     const double azimuth = AzimuthOfTurn(turn / kQuarter);
     const double z = bottom_ + height_ * row / (kHeights - 1);
     const GridCoordinates there = grid_.Locate(rest_, azimuth, z, grid_.Guess(rest_, azimuth, z));
-    radius_[entry] = grid_.Polar(grid_.At(rest_, there)).radius;
+    shape_.radius[entry] = grid_.Polar(grid_.At(rest_, there)).radius;
     CageQuadratic change;
     for (size_t k = 0; k < moved_.size(); ++k) {
       const GridCoordinates now = grid_.Locate(moved_[k], azimuth, z, there);
-      fit.Add(k, grid_.Polar(grid_.At(moved_[k], now)).radius - radius_[entry], change);
+      fit.Add(k, grid_.Polar(grid_.At(moved_[k], now)).radius - shape_.radius[entry], change);
     }
-    for (size_t j = 0; j < change.c.size(); ++j) change_[j][entry] = change.c[j];
+    for (size_t j = 0; j < change.c.size(); ++j) shape_.change[j][entry] = change.c[j];
+    for (size_t part = 0; part < kCageParts; ++part) {
+      if (weight_[part].size() > 0) shape_.weight[part][entry] = grid_.At(weight_[part], there).x();
+    }
   }
 }
 
@@ -124,7 +149,33 @@ InnerWall::Follower InnerWall::Follow(const Eigen::Vector3d& point) const {
     const Eigen::Vector3d shift = grid_.At(moved_[k], there) - from;
     for (int axis = 0; axis < 3; ++axis) fit.Add(k, shift[axis], follower.shift[axis]);
   }
+  for (size_t part = 0; part < kCageParts; ++part) {
+    if (weight_[part].size() > 0) follower.weight[part] = grid_.At(weight_[part], there).x();
+  }
   return follower;
+}
+
+Eigen::Vector2d InnerWall::VolumeOf(const Points& grid, const std::vector<GridCoordinates>& feet,
+                                    const std::vector<Eigen::Vector3d>& loop, const Eigen::Vector3d& apex) const {
+  const auto point = [&](size_t i, int level) -> Eigen::Vector3d {
+    const GridCoordinates& foot = feet[i % feet.size()];
+    return grid_.At(grid, {foot.column, foot.row + (grid_.rows() - 1 - foot.row) * level / kLevels}) - apex;
+  };
+  Eigen::Vector3d top = Eigen::Vector3d::Zero();
+  for (size_t i = 0; i < feet.size(); ++i) top += point(i, kLevels) / static_cast<double>(feet.size());
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (size_t i = 0; i < feet.size(); ++i) {
+    double strip = 0;
+    for (int level = 0; level < kLevels; ++level) {
+      const Eigen::Vector3d a = point(i, level), b = point(i + 1, level), c = point(i + 1, level + 1),
+                            d = point(i, level + 1);
+      strip += ConeOver(a, b, c) + ConeOver(a, c, d);
+    }
+    strip += ConeOver(point(i, kLevels), point(i + 1, kLevels), top);
+    const Eigen::Vector3d& next = loop[(i + 1) % loop.size()];
+    sum[loop[i].x() + next.x() < 0 ? 0 : 1] += strip;
+  }
+  return sum;
 }
 
 InnerWall::Volumes InnerWall::VolumesAbove(const std::vector<Eigen::Vector3d>& loop,
@@ -134,34 +185,24 @@ InnerWall::Volumes InnerWall::VolumesAbove(const std::vector<Eigen::Vector3d>& l
     const PolarPoint polar = grid_.Polar(point);
     feet.push_back(grid_.Locate(rest_, polar.azimuth, polar.z, grid_.Guess(rest_, polar.azimuth, polar.z)));
   }
-  const auto volumes = [&](const Points& grid) {
-    const auto point = [&](size_t i, int level) -> Eigen::Vector3d {
-      const GridCoordinates& foot = feet[i % feet.size()];
-      return grid_.At(grid, {foot.column, foot.row + (grid_.rows() - 1 - foot.row) * level / kLevels}) - apex;
-    };
-    Eigen::Vector3d top = Eigen::Vector3d::Zero();
-    for (size_t i = 0; i < feet.size(); ++i) top += point(i, kLevels) / static_cast<double>(feet.size());
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero();  // right, left
-    for (size_t i = 0; i < feet.size(); ++i) {
-      double strip = 0;
-      for (int level = 0; level < kLevels; ++level) {
-        const Eigen::Vector3d a = point(i, level), b = point(i + 1, level), c = point(i + 1, level + 1),
-                              d = point(i, level + 1);
-        strip += ConeOver(a, b, c) + ConeOver(a, c, d);
-      }
-      strip += ConeOver(point(i, kLevels), point(i + 1, kLevels), top);
-      const Eigen::Vector3d& next = loop[(i + 1) % loop.size()];
-      sum[loop[i].x() + next.x() < 0 ? 0 : 1] += strip;
-    }
-    return sum;
-  };
+  const auto volumes = [&](const Points& grid) { return VolumeOf(grid, feet, loop, apex); };
   const CageFit fit;
   const Eigen::Vector2d at_rest = volumes(rest_);
   Volumes result;
   for (size_t k = 0; k < moved_.size(); ++k) {
     const Eigen::Vector2d change = volumes(moved_[k]) - at_rest;
-    fit.Add(k, change[0], result.right);
-    fit.Add(k, change[1], result.left);
+    fit.Add(k, change[0], result.right.shared);
+    fit.Add(k, change[1], result.left.shared);
+  }
+  for (size_t part = 0; part < kCageParts; ++part) {
+    const PartGrids& grids = parts_[part];
+    std::array<double, 4> right = {}, left = {};
+    for (size_t i = 0; i < grids.departed.size(); ++i) {
+      const Eigen::Vector2d change = volumes(grids.departed[i]) - volumes(grids.shared[i]);
+      right[i] = change[0], left[i] = change[1];
+    }
+    result.right.parts[part] = CageFit::Through(right);
+    result.left.parts[part] = CageFit::Through(left);
   }
   return result;
 }

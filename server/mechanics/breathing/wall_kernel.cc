@@ -31,19 +31,25 @@ HWY_INLINE Vector Clamped(Vector v, double low, double high) {
 HWY_INLINE Vector Between(Vector a, Vector b, Vector t) { return hn::Add(a, hn::Mul(t, hn::Sub(b, a))); }
 
 // A quadratic's change from rest is the mean of its slopes at both ends.
-void EvaluateHere(const std::vector<double>& rest, const std::array<std::vector<double>, 5>& change,
-                  const CagePosition& k, WallTable& table) {
+template <bool kDeparts>
+HWY_INLINE void Evaluate(const WallShape& shape, const CagePosition& k, WallTable& table) {
   const Tag d;
-  const Vector pump = Constant(k.pump), bucket = Constant(k.bucket), half = Constant(0.5), two = Constant(2);
+  const std::array<std::vector<double>, 5>& change = shape.change;
+  const Vector half = Constant(0.5), two = Constant(2);
+  Vector pump = Constant(k.pump), bucket = Constant(k.bucket);
   for (int row = 0; row < kWallHeights; ++row) {
     Vector least = Constant(1e300);
     for (int i = row * kWallTurns; i < (row + 1) * kWallTurns; i += kWallLanes) {
+      if constexpr (kDeparts) {
+        const Vector departure = hn::LoadU(d, &table.departure[i]);
+        pump = hn::Add(Constant(k.pump), departure), bucket = hn::Add(Constant(k.bucket), departure);
+      }
       const Vector p = hn::LoadU(d, &change[0][i]), b = hn::LoadU(d, &change[1][i]);
       const Vector pp = hn::LoadU(d, &change[2][i]), bb = hn::LoadU(d, &change[3][i]), pb = hn::LoadU(d, &change[4][i]);
       const Vector by_pump = hn::Add(hn::Add(p, hn::Mul(two, hn::Mul(pp, pump))), hn::Mul(pb, bucket));
       const Vector by_bucket = hn::Add(hn::Add(b, hn::Mul(two, hn::Mul(bb, bucket))), hn::Mul(pb, pump));
       const Vector moved = hn::Add(hn::Mul(pump, hn::Add(p, by_pump)), hn::Mul(bucket, hn::Add(b, by_bucket)));
-      const Vector radius = hn::Add(hn::LoadU(d, &rest[i]), hn::Mul(half, moved));
+      const Vector radius = hn::Add(hn::LoadU(d, &shape.radius[i]), hn::Mul(half, moved));
       hn::StoreU(radius, d, &table.radius[i]);
       hn::StoreU(by_pump, d, &table.by_pump[i]);
       hn::StoreU(by_bucket, d, &table.by_bucket[i]);
@@ -51,6 +57,10 @@ void EvaluateHere(const std::vector<double>& rest, const std::array<std::vector<
     }
     table.least[row] = hn::GetLane(hn::MinOfLanes(d, least));
   }
+}
+
+void EvaluateHere(const WallShape& shape, const CagePosition& k, WallTable& table) {
+  k.departs() ? Evaluate<true>(shape, k, table) : Evaluate<false>(shape, k, table);
 }
 
 // The point against the axis, and the rows of the table around it.
@@ -129,9 +139,16 @@ HWY_INLINE Corners Around(const Cell& cell, const double* table) {
           hn::GatherIndex(d, high, cell.low_left), hn::GatherIndex(d, high, cell.low_right)};
 }
 
-// Adds the forces of the vertices from `lane` on, and their reactions to `pump` and `bucket`, which have eight lanes.
+// Reactions to the coordinates, pump, bucket and parts, of eight lanes each.
+using LaneSums = double[2 + kCageParts][kPacketSliders];
+
+HWY_INLINE void AddReaction(Vector push, const Cell& cell, const std::vector<double>& by, double* lanes) {
+  hn::StoreU(hn::Add(hn::LoadU(Tag(), lanes), hn::Mul(push, Around(cell, by.data()).At(cell))), Tag(), lanes);
+}
+
+// Adds the forces of the vertices from `lane` on, and their reactions to `sums`.
 HWY_INLINE void Push(const SliderPacket& packet, int lane, const WallFrame& frame, const WallTable& table,
-                     double margin, double largest_depth, const double* x, double* f, double* pump, double* bucket) {
+                     double margin, double largest_depth, const double* x, double* f, LaneSums& sums) {
   const Tag d;
   const Height at = HeightOf(points::Transposed<true>(x, packet.offset + lane), frame);
   if (AllFarInside(at, table, margin)) return;
@@ -150,22 +167,26 @@ HWY_INLINE void Push(const SliderPacket& packet, int lane, const WallFrame& fram
                          hn::Mul(push, hn::Add(hn::Mul(by_turn, turn.by_y), hn::Div(at.front, distance))),
                          hn::Mul(push, by_z)};
   points::AddRows(points::ToRows(force), packet.offset + lane, std::min(kWallLanes, packet.count - lane), f);
-  const Vector by_pump = Around(cell, table.by_pump.data()).At(cell);
-  const Vector by_bucket = Around(cell, table.by_bucket.data()).At(cell);
-  hn::StoreU(hn::Add(hn::LoadU(d, pump + lane), hn::Mul(push, by_pump)), d, pump + lane);
-  hn::StoreU(hn::Add(hn::LoadU(d, bucket + lane), hn::Mul(push, by_bucket)), d, bucket + lane);
+  AddReaction(push, cell, table.by_pump, sums[0] + lane);
+  AddReaction(push, cell, table.by_bucket, sums[1] + lane);
+  for (size_t i = 0; i < kCageParts; ++i) {
+    if (!table.by_part[i].empty()) AddReaction(push, cell, table.by_part[i], sums[2 + i] + lane);
+  }
 }
 
 WallReaction PushHere(const std::vector<SliderPacket>& packets, const WallFrame& frame, const WallTable& table,
                       double margin, double largest_depth, const double* x, double* f) {
-  double pump[kPacketSliders] = {}, bucket[kPacketSliders] = {};
+  LaneSums sums = {};
   for (const SliderPacket& packet : packets) {
     for (int lane = 0; lane < packet.count; lane += kWallLanes) {
-      Push(packet, lane, frame, table, margin, largest_depth, x, f, pump, bucket);
+      Push(packet, lane, frame, table, margin, largest_depth, x, f, sums);
     }
   }
   WallReaction reaction;
-  for (int lane = 0; lane < kPacketSliders; ++lane) reaction.pump += pump[lane], reaction.bucket += bucket[lane];
+  for (int lane = 0; lane < kPacketSliders; ++lane) {
+    reaction.pump += sums[0][lane], reaction.bucket += sums[1][lane];
+    for (size_t i = 0; i < kCageParts; ++i) reaction.parts[i] += sums[2 + i][lane];
+  }
   return reaction;
 }
 
@@ -179,11 +200,31 @@ namespace phrenic {
 HWY_EXPORT(EvaluateHere);
 HWY_EXPORT(PushHere);
 
-void EvaluateWall(const std::vector<double>& rest, const std::array<std::vector<double>, 5>& change,
-                  const CagePosition& k, WallTable& table) {
-  for (auto* values : {&table.radius, &table.by_pump, &table.by_bucket}) values->resize(rest.size());
+namespace {
+
+void SetDepartures(const WallShape& shape, const CagePosition& k, std::vector<double>& departure) {
+  departure.assign(shape.radius.size(), 0);
+  for (size_t part = 0; part < kCageParts; ++part) {
+    const double u = k.parts[part];
+    if (u == 0) continue;
+    for (size_t i = 0; i < departure.size(); ++i) departure[i] += shape.weight[part][i] * u;
+  }
+}
+
+}  // namespace
+
+void EvaluateWall(const WallShape& shape, const CagePosition& k, const MovingParts& moving, WallTable& table) {
+  const size_t entries = shape.radius.size();
+  for (auto* values : {&table.radius, &table.by_pump, &table.by_bucket}) values->resize(entries);
   table.least.resize(kWallHeights);
-  HWY_DYNAMIC_DISPATCH(EvaluateHere)(rest, change, k, table);
+  if (k.departs()) SetDepartures(shape, k, table.departure);
+  HWY_DYNAMIC_DISPATCH(EvaluateHere)(shape, k, table);
+  for (size_t part = 0; part < kCageParts; ++part) {
+    std::vector<double>& by = table.by_part[part];
+    by.resize(moving[part] ? entries : 0);
+    const std::vector<double>& weight = shape.weight[part];
+    for (size_t i = 0; i < by.size(); ++i) by[i] = weight[i] * (table.by_pump[i] + table.by_bucket[i]);
+  }
 }
 
 WallReaction PushFromWall(const std::vector<SliderPacket>& packets, const WallFrame& frame, const WallTable& table,

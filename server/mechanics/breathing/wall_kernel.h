@@ -25,12 +25,25 @@ struct WallFrame {
 // derivatives, row after row [m].
 struct WallTable {
   std::vector<double> radius, by_pump, by_bucket;
-  std::vector<double> least;  // radius of each row
+  std::array<std::vector<double>, kCageParts> by_part;  // empty for parts that do not move
+  std::vector<double> least;                            // radius of each row
+  std::vector<double> departure;                        // of each entry from the shared coordinates, while parts depart
 };
 
-// Sets `table` from the radius at rest and the coefficients of its quadratics, one per entry.
-void EvaluateWall(const std::vector<double>& rest, const std::array<std::vector<double>, 5>& change,
-                  const CagePosition& k, WallTable& table);
+// What the radius depends on, one value per entry of the table: the radius at rest, the coefficients of its quadratic
+// in the coordinates of the place, and the weights of the cage's parts; empty for a part that the cage lacks.
+struct WallShape {
+  std::vector<double> radius;  // [m]
+  std::array<std::vector<double>, 5> change;
+  std::array<std::vector<double>, kCageParts> weight;
+};
+
+// The parts of a cage that forces move now.
+using MovingParts = std::array<bool, kCageParts>;
+
+// Sets `table`, with derivatives by the parts that move. A cage whose parts do not move and are at 0 costs nothing more
+// than one without parts.
+void EvaluateWall(const WallShape& shape, const CagePosition& k, const MovingParts& moving, WallTable& table);
 
 // Eight vertices that may touch the wall. Padding repeats the first vertex and is not counted.
 struct SliderPacket {
@@ -42,7 +55,8 @@ struct SliderPacket {
 
 // The generalised forces of the contact on the cage.
 struct WallReaction {
-  double pump = 0, bucket = 0;  // [J]
+  double pump = 0, bucket = 0;                // [J]
+  std::array<double, kCageParts> parts = {};  // [J]
 };
 
 // Adds to f, with the layout of x, the forces -k min(g - g_0, `largest_depth`) grad g of the vertices beyond their

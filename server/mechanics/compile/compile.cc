@@ -50,7 +50,8 @@ std::string KindOf(const v1::Force& force) {
 absl::Status BalanceForces(ModelBuilder& builder) {
   const Model& model = builder.model;
   const State rest = model.InitialState();
-  const EvalContext at = MakeEvalContext(model, model.parameters, rest);
+  EvalContext at = MakeEvalContext(model, model.parameters, rest);
+  at.releases_all = true;
   for (const auto& force : model.forces) {
     if (!force->balances_at_rest()) continue;
     Points load = Points::Zero(3, model.rest.cols()), normals = load;

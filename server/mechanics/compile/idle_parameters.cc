@@ -37,6 +37,14 @@ void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
   idle_unless(driven || air, {"hyperinflation"});
   idle_unless(muscle, {"diaphragm_activation"});
   idle_unless(cage, {"intercostal_activation", "chest_wall_compliance"});
+  const auto has_cage = [&scene](const auto& condition) {
+    return Any(scene.motions(), [&](const v1::Motion& motion) { return condition(motion.ribs().free()); });
+  };
+  idle_unless(
+      cage && has_cage([](const v1::FreeCage& free) { return free.has_sides(); }),
+      {"right_intercostals", "left_intercostals", "right_cage_compliance", "left_cage_compliance", "cage_tilt"});
+  idle_unless(cage && has_cage([](const v1::FreeCage& free) { return free.has_segments(); }),
+              {"flail_right", "flail_left"});
   idle_unless(muscle || cage || thorax, {"muscle_strength"});
   idle_unless(cage || thorax, {"expiratory_activation"});
   idle_unless(thorax, {"airway_resistance", "lung_compliance", "abdominal_compliance", "abdominal_load",
@@ -47,7 +55,9 @@ void ReportIdleParameters(const v1::Scene& scene, v1::CompileReport& report) {
   }
   idle_unless(muscle || has_line(v1::SIDE_RIGHT), {"right_activation"});
   idle_unless(muscle || has_line(v1::SIDE_LEFT), {"left_activation"});
-  idle_unless(scene.breath().waveform() == v1::WAVEFORM_RAISED_COSINE, {"inspiratory_share", "pause_share"});
+  const bool shares = scene.breath().waveform() == v1::WAVEFORM_RAISED_COSINE;
+  idle_unless(shares, {"inspiratory_share", "pause_share"});
+  idle_unless(shares && thorax, {"glottis_share"});
   idle_unless(lines || muscle || cage || driven || thorax, {"waxing"});
   idle_unless(!scene.constraints().empty(), {"apply_links"});
 }

@@ -7,6 +7,14 @@
 // intercostal_activation, times breath_force, rib_motion and the breath's signal, less expiratory_activation times the
 // share of the expiratory muscles; muscle_strength scales it, and pump_handle and bucket_handle the two shares.
 //   E = sum K k^2/2 - Q_rest k  [J].
+// Where the sides move apart (motions/insertion.h), by t from the mean, each has half of K and of the muscles: right
+// k + t - t_0 and left k - t + t_0 stand for k, with the live parameters t_0 cage_tilt, right_cage_compliance and
+// left_cage_compliance, which divide K once more, and right_intercostals and left_intercostals, which scale a. Sternum
+// and spine couple the sides by E = K_t (t - t_0)^2/2, K_t the `side_coupling` of the sum of both K. A segment of
+// broken ribs is held by soft tissue and driven by the pleural pressure alone:
+//   Q_u = Q_rest - K_u u (1 + u^2) - c M_u u',  K_u = V_u^2/(C_s flail),
+// C_s the segment_compliance and flail one of the live parameters flail_right and flail_left. What is not moved is held
+// at 0, a critically damped spring leads it back.
 // Compliance of the relaxed chest wall without the abdomen: breathing mechanics texts; the split between pump and
 // bucket as the ribs' table makes it.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_CHEST_WALL_H_
@@ -14,6 +22,7 @@
 
 #include <array>
 #include <memory>
+#include <vector>
 
 #include "server/mechanics/model_builder.h"
 #include "server/mechanics/motions/insertion.h"
@@ -32,11 +41,20 @@ class ChestWall final : public Force {
   bool balances_at_rest() const override { return true; }
   absl::Status BalanceAtRest(const ConstPoints& load, const ConstPoints& normals, ModelBuilder& builder,
                              Eigen::VectorXd& pushes) override;
-  // k of the pump handle and the bucket handle [-].
+  // k of the pump handle and the bucket handle, and of the parts t and u, 0 where the cage lacks them [-].
   std::span<const Output> outputs() const override;
   double Read(size_t output, const EvalContext& at) const override;
 
  private:
+  // A part of the cage that the wall has.
+  struct Part {
+    CagePart part = kCageSides;
+    Coordinate coordinate;
+    double stiffness = 0;  // K_t, or V_u^2/C_s [J]
+    double damping = 0;    // c M [J s]
+    double holding = 0;    // of what is held [J]
+    double rest_load = 0;  // Q_rest [J]
+  };
   struct Handle {
     Coordinate coordinate;
     double stiffness = 0;  // K [J]
@@ -48,10 +66,24 @@ class ChestWall final : public Force {
   double Stiffness(const Handle& handle, const EvalContext& at, double k) const {
     return handle.stiffness * (k < 0 ? stiffening_below_rest_ : 1) / at.parameters.chest_wall_compliance();
   }
-  // a
-  double Activation(const EvalContext& at) const;
+  void AddParts(const v1::ChestWall& scene, const ModelBuilder& builder);
+  // a, of both sides or of one: `share` scales what raises the ribs.
+  double Activation(const EvalContext& at, double share = 1) const;
+  // What a handle of one side has: half the stiffness, and its distance from where it rests.
+  struct HalfHandle {
+    double sign = 1, stiffness = 0, beyond = 0, pull = 0;
+  };
+  std::array<HalfHandle, 2> Halves(const Handle& handle, double tilt, const EvalContext& at) const;
+  bool SidesMove(const EvalContext& at) const { return wall_->Moves(kCageSides, at); }
+  const Part* Sides() const;
+  double SegmentStiffness(const Part& part, const EvalContext& at) const;
+  void AddForceOfSides(const EvalContext& at, MutablePoints f) const;
+  void AddForceOfParts(const EvalContext& at, MutablePoints f) const;
+  double EnergyOfSides(const EvalContext& at) const;
 
+  std::shared_ptr<const CageWall> wall_;
   std::array<Handle, 2> handles_;
+  std::vector<Part> parts_;
   double stiffening_below_rest_ = 1, shortening_loss_ = 0, expiratory_share_ = 0;
 };
 

@@ -230,12 +230,12 @@ double ThoraxPressures::RecoilEnergy(double volume) const {
   return (curve - beyond * std::log(kLeastRoom) + beyond * beyond / (2 * least)) / rate;
 }
 
-double ThoraxPressures::GasElastance(const v1::Parameters& parameters) const {
-  return parameters.airway_closed() ? kAtmosphere / scene_.lungs().rest_volume() : 0;
+double ThoraxPressures::GasElastance(const EvalContext& at) const {
+  return at.airway_closed ? kAtmosphere / scene_.lungs().rest_volume() : 0;
 }
 
 double ThoraxPressures::GasPressure(const EvalContext& at, const Sides& now) const {
-  const double elastance = GasElastance(at.parameters);
+  const double elastance = GasElastance(at);
   if (elastance == 0 || at.scalars.q[first_scalar_] == 0) return 0;  // it closes in this step
   return -elastance * (Volume(now) - at.scalars.q[first_scalar_ + 1]);
 }
@@ -247,13 +247,13 @@ void ThoraxPressures::SetScalarRates(const EvalContext& at, Eigen::VectorXd& rat
 void ThoraxPressures::AdvanceScalars(const EvalContext& end, std::int64_t, double dt, ScalarState& scalars) const {
   scalars.q[expiration_] += dt / (kActivationTime + dt) * (ExpiratoryDrive(end) - scalars.q[expiration_]);
   double &closed = scalars.q[first_scalar_], &volume = scalars.q[first_scalar_ + 1];
-  if (end.parameters.airway_closed() && closed == 0) volume = Volume(SidesAt(end, SlopesAt(end)));
-  closed = end.parameters.airway_closed() ? 1 : 0;
+  if (end.airway_closed && closed == 0) volume = Volume(SidesAt(end, SlopesAt(end)));
+  closed = end.airway_closed ? 1 : 0;
   if (closed == 0) volume = 0;
 }
 
 double ThoraxPressures::AirwayPressure(const EvalContext& at, const Sides& now) const {
-  if (at.parameters.airway_closed()) return GasPressure(at, now);
+  if (at.airway_closed) return GasPressure(at, now);
   return at.parameters.airway_pressure() + at.parameters.ventilator_pressure() * std::max(0.0, at.breath);
 }
 
@@ -263,12 +263,13 @@ double ThoraxPressures::AbdominalLoad(const EvalContext& at) const {
          scene_.abdomen().expiratory_pressure() * parameters.muscle_strength() * at.scalars.q[expiration_];
 }
 
-void ThoraxPressures::SetResistances(const v1::Parameters& parameters, Sides& now) const {
+void ThoraxPressures::SetResistances(const EvalContext& at, Sides& now) const {
   const v1::LungPair& lungs = scene_.lungs();
+  const v1::Parameters& parameters = at.parameters;
   now.open = {1 - parameters.pneumothorax_right(), 1 - parameters.pneumothorax_left()};
   const double factor = parameters.airway_resistance();
   now.common = factor * std::max(0.0, lungs.resistance() - lungs.peripheral_resistance());
-  if (parameters.airway_closed()) now.common = 0;
+  if (at.airway_closed) now.common = 0;
   const double closing = parameters.trapped_air() / 2;
   for (const size_t h : {kRight, kLeft}) {
     now.peripheral[h] = factor * lungs.peripheral_resistance();
@@ -285,15 +286,14 @@ ThoraxPressures::Sides ThoraxPressures::SidesAt(const EvalContext& at, const Slo
   const CagePosition rate = wall_->Rate(at);
   const double fluid[] = {at.parameters.pleural_fluid_right(), at.parameters.pleural_fluid_left()};
   for (const size_t h : {kRight, kLeft}) {
-    const CageQuadratic& wall = WallVolume(h);
+    const CageFunction& wall = WallVolume(h);
     const double cone = slopes.cones[h] - rest_cones_[h];
     now.volume[h] = wall.At(now.cage) - cone + WithSign(h) * shift_.Value(at.x) - fluid[h];
-    now.flow[h] = wall.ByPump(now.cage) * rate.pump + wall.ByBucket(now.cage) * rate.bucket - swept[h] +
-                  WithSign(h) * shift_.Rate(at.v);
+    now.flow[h] = wall.RateAt(now.cage, rate) - swept[h] + WithSign(h) * shift_.Rate(at.v);
     now.displaced -= cone;
     now.displaced_rate -= swept[h];
   }
-  SetResistances(at.parameters, now);
+  SetResistances(at, now);
   const double airway = AirwayPressure(at, now) - now.common * Flow(now);
   for (const size_t h : {kRight, kLeft}) {
     const double recoil = (scene_.pleural_pressure() - Recoil(now.volume[h])) / at.parameters.lung_compliance();
@@ -309,25 +309,30 @@ void ThoraxPressures::AddForce(const EvalContext& at, MutablePoints f) const {
   const Sides now = SidesAt(at, slopes);
   AddSlopes(now.abdominal - now.pleural[kRight], now.abdominal - now.pleural[kLeft], slopes, f);
   f.middleCols(sheet_.first_vertex, slopes.push.cols()) += slopes.push;
-  for (const size_t h : {kRight, kLeft}) {
-    const CageQuadratic& wall = WallVolume(h);
-    wall_->pump.AddForce(now.pleural[h] * wall.ByPump(now.cage), f);
-    wall_->bucket.AddForce(now.pleural[h] * wall.ByBucket(now.cage), f);
-  }
+  AddToCage(now.pleural[kRight], 0, now.cage, at, f);
+  AddToCage(0, now.pleural[kLeft], now.cage, at, f);
   const double shift = shift_.Value(at.x);
   shift_.AddForce(now.pleural[kRight] - now.pleural[kLeft] - shift / scene_.lungs().mediastinal_compliance() -
                       shift_damping_ * shift_.Rate(at.v),
                   f);
 }
 
+void ThoraxPressures::AddToCage(double right, double left, const CagePosition& k, const EvalContext& at,
+                                MutablePoints f) const {
+  const CageFunction &on_right = WallVolume(kRight), &on_left = WallVolume(kLeft);
+  wall_->pump.AddForce(right * on_right.ByPump(k) + left * on_left.ByPump(k), f);
+  wall_->bucket.AddForce(right * on_right.ByBucket(k) + left * on_left.ByBucket(k), f);
+  std::array<double, kCageParts> parts = {};
+  for (size_t i = 0; i < kCageParts; ++i) parts[i] = right * on_right.ByPart(k, i) + left * on_left.ByPart(k, i);
+  wall_->AddPartForces(parts, at, f);
+}
+
 void ThoraxPressures::SetVolumeSlopes(double right, double left, const Slopes& slopes, const CagePosition& k,
-                                      Points& g) const {
+                                      const EvalContext& at, Points& g) const {
   g.setZero();
   AddSlopes(-right, -left, slopes, g);
-  const auto by = [&](double on_right, double on_left) { return right * on_right + left * on_left; };
-  wall_->pump.AddForce(by(WallVolume(kRight).ByPump(k), WallVolume(kLeft).ByPump(k)), g);
-  wall_->bucket.AddForce(by(WallVolume(kRight).ByBucket(k), WallVolume(kLeft).ByBucket(k)), g);
-  shift_.AddForce(by(WithSign(kRight), WithSign(kLeft)), g);
+  AddToCage(right, left, k, at, g);
+  shift_.AddForce(right * WithSign(kRight) + left * WithSign(kLeft), g);
 }
 
 void ThoraxPressures::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
@@ -336,13 +341,13 @@ void ThoraxPressures::AddStiffness(const EvalContext& at, StiffnessSink& sink) c
   const v1::Parameters& parameters = at.parameters;
   Points g(3, at.x.cols());
   for (const size_t h : {kRight, kLeft}) {
-    SetVolumeSlopes(h == kRight ? 1 : 0, h == kLeft ? 1 : 0, slopes, now.cage, g);
+    SetVolumeSlopes(h == kRight ? 1 : 0, h == kLeft ? 1 : 0, slopes, now.cage, at, g);
     sink.AddOuter(now.open[h] * RecoilSlope(now.volume[h]) / parameters.lung_compliance(), g);
   }
   g.setZero();
   AddSlopes(1, 1, slopes, g);
-  if (const double elastance = GasElastance(parameters); elastance > 0) {
-    SetVolumeSlopes(now.open[kRight], now.open[kLeft], slopes, now.cage, g);
+  if (const double elastance = GasElastance(at); elastance > 0) {
+    SetVolumeSlopes(now.open[kRight], now.open[kLeft], slopes, now.cage, at, g);
     sink.AddOuter(elastance, g);
     g.setZero();
     AddSlopes(1, 1, slopes, g);
@@ -366,9 +371,9 @@ void ThoraxPressures::AddSharedDamping(const EvalContext& at, OuterProducts& sha
     return 2 * now.open[h] * now.peripheral[h] + now.common * now.open[h] * now.open[h];
   };
   const double right = own(kRight), both = now.common * now.open[kRight] * now.open[kLeft];
-  if (right > 0) SetVolumeSlopes(1, both / right, slopes, now.cage, add(right));
+  if (right > 0) SetVolumeSlopes(1, both / right, slopes, now.cage, at, add(right));
   const double left = own(kLeft) - (right > 0 ? both * both / right : 0);
-  if (left > 0) SetVolumeSlopes(0, 1, slopes, now.cage, add(left));
+  if (left > 0) SetVolumeSlopes(0, 1, slopes, now.cage, at, add(left));
   if (scene_.abdomen().resistance() <= 0) return;
   Points& g = add(scene_.abdomen().resistance());
   g.setZero();
@@ -376,9 +381,9 @@ void ThoraxPressures::AddSharedDamping(const EvalContext& at, OuterProducts& sha
 }
 
 double ThoraxPressures::EnergyOfGas(const EvalContext& at, const Sides& now) const {
-  if (!at.parameters.airway_closed()) return -AirwayPressure(at, now) * Volume(now);
+  if (!at.airway_closed) return -AirwayPressure(at, now) * Volume(now);
   const double pressure = GasPressure(at, now);
-  return pressure * pressure / (2 * GasElastance(at.parameters));
+  return pressure * pressure / (2 * GasElastance(at));
 }
 
 double ThoraxPressures::Energy(const EvalContext& at) const {

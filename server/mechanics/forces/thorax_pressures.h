@@ -8,15 +8,15 @@
 //                      + p_airway - b (o_right v_right + o_left v_left - v_closed)]  [Pa],
 // R_p the peripheral resistance of both lungs side by side, R_c = R - R_p that of the common airway, and by the live
 // parameters c the lung_compliance, u_h the pleural_fluid and o_h = 1 - pneumothorax of the side; airway_resistance
-// multiplies R. With airway_closed the gas that the lungs had when it closed, v_closed, is compressed by Boyle's law: b
-// is the atmospheric pressure over their volume, 0 while it is open, and R_c is 0 then. Below half of trapped_air the
-// airways of a lung close in expiration: R_p,h grows a thousandfold. p_airway is airway_pressure, plus
-// ventilator_pressure times the signal; 0 when closed. Of the abdomen, with v = S_0 - S the volume that the diaphragm
-// displaces,
+// multiplies R. With airway_closed, or the glottis closed (breath_signal.h), the gas that the lungs had when it closed,
+// v_closed, is compressed by Boyle's law: b is the atmospheric pressure over their volume, 0 while it is open, and R_c
+// is 0 then. Below half of trapped_air the airways of a lung close in expiration: R_p,h grows a thousandfold. p_airway
+// is airway_pressure, plus ventilator_pressure times the signal; 0 when closed. Of the abdomen, with v = S_0 - S the
+// volume that the diaphragm displaces,
 //   p_abdomen = p_0 + p_di + v/(C c_a) (1 + (v/V)^2) + R_a v' + p_load + P_e a_e + w . (x - x_0),
 // c_a the abdominal_compliance, p_load the abdominal_load, a_e the activation of the expiratory muscles and w the
 // gradient by the weight of its contents, whose direction is that of the posture. The forces are those of virtual work:
-//   f_i = sum_h (p_abdomen - p_pleural,h) dS_h/dx_i,  Q_k = sum_h p_pleural,h dW_h/dk,
+//   f_i = sum_h (p_abdomen - p_pleural,h) dS_h/dx_i,  Q_k = sum_h p_pleural,h dW_h/dk, also for parts of the cage,
 //   Q_s = p_pleural,right - p_pleural,left - s/C_m - c M_m s'.
 // Inside the sheet dS_h/dx_i is the area vector of the side's triangles; where the sides meet the cones' common face
 // carries no force. The resistances are implicit: -df/dv = sum of R g g^T.
@@ -101,11 +101,11 @@ class ThoraxPressures final : public Force {
   // Adds right dS_right/dx + left dS_left/dx to g, 3 x simulated vertices.
   void AddSlopes(double right, double left, const Slopes& slopes, MutablePoints g) const;
   Sides SidesAt(const EvalContext& at, const Slopes& slopes) const;
-  void SetResistances(const v1::Parameters& parameters, Sides& now) const;
+  void SetResistances(const EvalContext& at, Sides& now) const;
   double AirwayPressure(const EvalContext& at, const Sides& now) const;
   // The pressure of the gas behind a closed airway, and its elastance [Pa/m^3]; 0 if it is open.
   double GasPressure(const EvalContext& at, const Sides& now) const;
-  double GasElastance(const v1::Parameters& parameters) const;
+  double GasElastance(const EvalContext& at) const;
   // The part of the abdominal pressure that does not depend on its volume.
   double AbdominalLoad(const EvalContext& at) const;
   double Recoil(double volume) const;       // of one lung [Pa]
@@ -120,11 +120,14 @@ class ThoraxPressures final : public Force {
   static double Flow(const Sides& now) {
     return now.open[kRight] * now.flow[kRight] + now.open[kLeft] * now.flow[kLeft];
   }
-  const CageQuadratic& WallVolume(size_t side) const {
+  const CageFunction& WallVolume(size_t side) const {
     return side == kRight ? wall_->volumes.right : wall_->volumes.left;
   }
+  // Adds a generalised force right dW_right/dk + left dW_left/dk to the coordinates of the cage.
+  void AddToCage(double right, double left, const CagePosition& k, const EvalContext& at, MutablePoints f) const;
   // Sets g to right dv_right/d(all) + left dv_left/d(all), of vertices and coordinates.
-  void SetVolumeSlopes(double right, double left, const Slopes& slopes, const CagePosition& k, Points& g) const;
+  void SetVolumeSlopes(double right, double left, const Slopes& slopes, const CagePosition& k, const EvalContext& at,
+                       Points& g) const;
 
   const v1::ThoraxPressures scene_;
   const std::shared_ptr<const CageWall> wall_;

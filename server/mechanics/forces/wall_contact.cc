@@ -43,7 +43,7 @@ absl::StatusOr<std::unique_ptr<Force>> WallContact::Make(const v1::WallContact& 
 // What is outside of the wall at rest touches it there.
 void WallContact::PlaceAtRest(const Model& model) {
   WallTable table;
-  wall_->wall.Evaluate({}, table);
+  wall_->wall.Evaluate({}, {}, table);
   for (Slider& slider : sliders_) {
     const WallGap gap = wall_->wall.Gap(table, model.rest.col(slider.vertex));
     slider.rest_gap = gap.gap;
@@ -80,7 +80,7 @@ void WallContact::RestOnSurface(const Eigen::VectorXd& pushes) {
 
 const WallTable& WallContact::TableAt(const EvalContext& at) const {
   WallTable& table = at.scratch.Get<WallTable>();
-  wall_->wall.Evaluate(wall_->Position(at), table);
+  wall_->wall.Evaluate(wall_->Position(at), wall_->Moving(at), table);
   return table;
 }
 
@@ -98,6 +98,7 @@ void WallContact::AddForce(const EvalContext& at, MutablePoints f) const {
       PushFromWall(packets_, wall_->wall.frame(), TableAt(at), margin_, largest_depth_, at.x.data(), f.data());
   wall_->pump.AddForce(push.pump, f);
   wall_->bucket.AddForce(push.bucket, f);
+  wall_->AddPartForces(push.parts, at, f);
 }
 
 // Without the coupling to the cage, which is far softer.

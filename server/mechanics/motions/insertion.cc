@@ -1,5 +1,6 @@
 #include "server/mechanics/motions/insertion.h"
 
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -10,11 +11,23 @@
 namespace phrenic {
 namespace {
 
+constexpr double kNoDeparture = 1e-9;  // what is left of a part that has come back
+
+// The coordinates of a free cage.
+struct CageCoordinates {
+  Coordinate pump, bucket;
+  std::array<std::optional<Coordinate>, kCageParts> parts;
+};
+
 // Returns the positions of a body's vertices with the cage at `k`, by the motions that the scene has so far.
-Points PlaceAt(const Model& model, int body, const Coordinate& pump, const Coordinate& bucket, const CagePosition& k) {
+Points PlaceAt(const Model& model, int body, const CageCoordinates& cage, const CagePosition& k) {
   State state = model.InitialState();
-  state.x(pump.axis, pump.vertex) = pump.scale * k.pump;
-  state.x(bucket.axis, bucket.vertex) = bucket.scale * k.bucket;
+  const auto set = [&state](const Coordinate& c, double value) { state.x(c.axis, c.vertex) = c.scale * value; };
+  set(cage.pump, k.pump);
+  set(cage.bucket, k.bucket);
+  for (size_t i = 0; i < kCageParts; ++i) {
+    if (cage.parts[i]) set(*cage.parts[i], k.parts[i]);
+  }
   const EvalContext at = MakeEvalContext(model, model.parameters, state);
   for (const auto& motion : model.motions) motion->Drive(at, state);
   Points placed(3, model.bodies[body].mesh.vertices.cols());
@@ -30,14 +43,27 @@ absl::StatusOr<std::shared_ptr<CageWall>> MakeWall(int body, std::string_view pa
   if (grid.skin < 0) {
     return FieldError(path, absl::StrCat("body \"", grid.name, "\" does not follow the bones: give it a skin before"));
   }
-  const auto place = [&](const CagePosition& k) { return PlaceAt(builder.model, body, *pump, *bucket, k); };
+  CageCoordinates cage = {*pump, *bucket, {}};
+  const auto place = [&](const CagePosition& k) { return PlaceAt(builder.model, body, cage, k); };
   std::vector<Points> moved;
   for (const CagePosition& k : CageFit::Positions()) moved.push_back(place(k));
-  auto wall = InnerWall::Make(place({}), moved);
+  InnerWall::AllPartGrids grids;
+  for (size_t i = 0; i < kCageParts; ++i) {
+    const auto part = builder.FindCoordinate(kCagePartNames[i], path);
+    if (!part.ok()) continue;
+    cage.parts[i] = *part;
+    for (const CagePosition& k : CageFit::PositionsOf(static_cast<CagePart>(i))) {
+      grids[i].departed.push_back(place(k));
+      grids[i].shared.push_back(place({k.pump, k.bucket}));
+    }
+  }
+  auto wall = InnerWall::Make(place({}), moved, grids);
   if (!wall.ok()) {
     return FieldError(path, absl::StrCat("body \"", grid.name, "\" ", std::string(wall.status().message())));
   }
-  return std::make_shared<CageWall>(CageWall{body, *pump, *bucket, *std::move(wall)});
+  auto made = std::make_shared<CageWall>(CageWall{body, *pump, *bucket, *std::move(wall)});
+  made->parts = cage.parts;
+  return made;
 }
 
 // Returns the longest border of a body, in the order of its triangles' edges; empty if it is closed.
@@ -81,7 +107,49 @@ void DriveVertex(int vertex, Model& model) {
   model.driven_vertices.push_back(vertex);
 }
 
+// True if a live parameter lets the part move.
+bool IsReleased(size_t part, const v1::Parameters& p) {
+  if (part == kRightSegment) return p.flail_right() > 0;
+  if (part == kLeftSegment) return p.flail_left() > 0;
+  return p.cage_tilt() != 0 || p.right_intercostals() != 1 || p.left_intercostals() != 1 ||
+         p.right_cage_compliance() != 1 || p.left_cage_compliance() != 1;
+}
+
 }  // namespace
+
+bool CageWall::Moves(size_t part, const EvalContext& at) const {
+  return parts[part].has_value() && (at.releases_all || IsReleased(part, at.parameters));
+}
+
+MovingParts CageWall::Moving(const EvalContext& at) const {
+  MovingParts moving = {};
+  for (size_t i = 0; i < kCageParts; ++i) moving[i] = Moves(i, at);
+  return moving;
+}
+
+CagePosition CageWall::Position(const EvalContext& at) const {
+  CagePosition k = {pump.Value(at.x), bucket.Value(at.x)};
+  for (size_t i = 0; i < kCageParts; ++i) {
+    if (parts[i]) k.parts[i] = parts[i]->Value(at.x);
+    if (std::abs(k.parts[i]) < kNoDeparture && !Moves(i, at)) k.parts[i] = 0;
+  }
+  return k;
+}
+
+CagePosition CageWall::Rate(const EvalContext& at) const {
+  CagePosition rate = {pump.Rate(at.v), bucket.Rate(at.v)};
+  for (size_t i = 0; i < kCageParts; ++i) {
+    if (parts[i]) rate.parts[i] = parts[i]->Rate(at.v);
+  }
+  return rate;
+}
+
+void CageWall::AddPartForces(const std::array<double, kCageParts>& force, const EvalContext& at,
+                             MutablePoints f) const {
+  for (size_t i = 0; i < kCageParts; ++i) {
+    if (Moves(i, at)) parts[i]->AddForce(force[i], f);
+  }
+}
 
 absl::StatusOr<std::unique_ptr<Motion>> Insertion::Make(const v1::Insertion& scene, const std::string& given,
                                                         std::string_view path, ModelBuilder& builder) {
@@ -113,8 +181,9 @@ absl::StatusOr<std::unique_ptr<Motion>> Insertion::Make(const v1::Insertion& sce
 }
 
 void Insertion::Drive(const EvalContext& at, State& state) const {
-  const CagePosition k = wall_->Position(at), rate = wall_->Rate(at);
+  const CagePosition shared = wall_->Position(at), shared_rate = wall_->Rate(at);
   for (const Inserted& each : inserted_) {
+    const CagePosition k = shared.Of(each.path.weight), rate = shared_rate.Of(each.path.weight);
     for (int axis = 0; axis < 3; ++axis) {
       const CageQuadratic& shift = each.path.shift[axis];
       state.x(axis, each.vertex) = each.rest[axis] + shift.At(k);
@@ -124,16 +193,21 @@ void Insertion::Drive(const EvalContext& at, State& state) const {
 }
 
 void Insertion::TransferForces(const EvalContext& at, MutablePoints f) const {
-  const CagePosition k = wall_->Position(at);
+  const CagePosition shared = wall_->Position(at);
   double pump = 0, bucket = 0;
+  std::array<double, kCageParts> parts = {};
   for (const Inserted& each : inserted_) {
+    const CagePosition k = shared.Of(each.path.weight);
     for (int axis = 0; axis < 3; ++axis) {
-      pump += f(axis, each.vertex) * each.path.shift[axis].ByPump(k);
-      bucket += f(axis, each.vertex) * each.path.shift[axis].ByBucket(k);
+      const double by_pump = f(axis, each.vertex) * each.path.shift[axis].ByPump(k);
+      const double by_bucket = f(axis, each.vertex) * each.path.shift[axis].ByBucket(k);
+      pump += by_pump, bucket += by_bucket;
+      for (size_t i = 0; i < kCageParts; ++i) parts[i] += each.path.weight[i] * (by_pump + by_bucket);
     }
   }
   wall_->pump.AddForce(pump, f);
   wall_->bucket.AddForce(bucket, f);
+  wall_->AddPartForces(parts, at, f);
 }
 
 absl::StatusOr<std::shared_ptr<const CageWall>> FindCageWall(const std::string& body, std::string_view path,

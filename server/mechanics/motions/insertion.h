@@ -1,11 +1,14 @@
 // Vertices of a deformable body that are inserted on the inner wall of a free rib cage, and move with it:
 //   x_i = x_i0 + d_i(k),  v_i = sum_j (dx_i/dk_j) k_j',
-// d_i a quadratic in the cage's coordinates k (breathing/inner_wall.h). The forces f_i on them act on the cage, by
-// virtual work: Q_j += sum_i f_i . dx_i/dk_j. Where the wall does not move with the bones the vertices are still.
+// d_i a quadratic in the cage's coordinates k where the vertex is (breathing/inner_wall.h). The forces f_i on them act
+// on the cage, by virtual work: Q_j += sum_i f_i . dx_i/dk_j. Where the wall does not move with the bones the vertices
+// are still.
 #ifndef PHRENIC_SERVER_MECHANICS_MOTIONS_INSERTION_H_
 #define PHRENIC_SERVER_MECHANICS_MOTIONS_INSERTION_H_
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "server/mechanics/breathing/inner_wall.h"
@@ -22,8 +25,16 @@ struct CageWall {
   Eigen::Vector3d apex = Eigen::Vector3d::Zero();  // of the cones by which volumes are measured [m]
   InnerWall::Volumes volumes = {};                 // inside the wall, above the border
 
-  CagePosition Position(const EvalContext& at) const { return {pump.Value(at.x), bucket.Value(at.x)}; }
-  CagePosition Rate(const EvalContext& at) const { return {pump.Rate(at.v), bucket.Rate(at.v)}; }
+  std::array<std::optional<Coordinate>, kCageParts> parts = {};  // those that the cage has
+
+  CagePosition Position(const EvalContext& at) const;
+  CagePosition Rate(const EvalContext& at) const;
+  // True if forces move the part: in health the cage holds it. The sides move apart if a live parameter of one side
+  // departs from its default, a segment if it is broken. Where forces are balanced at rest every part moves.
+  bool Moves(size_t part, const EvalContext& at) const;
+  MovingParts Moving(const EvalContext& at) const;
+  // Adds generalised forces to the parts that move [J].
+  void AddPartForces(const std::array<double, kCageParts>& force, const EvalContext& at, MutablePoints f) const;
 };
 
 class Insertion final : public Motion {

@@ -49,6 +49,31 @@ absl::Status CheckRib(const BodyModel& body, const v1::Ribs& scene, std::string_
   return absl::OkStatus();
 }
 
+absl::Status CheckSegments(const v1::Ribs& scene, std::string_view path) {
+  const v1::CageSegments& segments = scene.free().segments();
+  if (!scene.free().has_segments()) return absl::OkStatus();
+  const std::string field = absl::StrCat(std::string(path), ".free.segments");
+  if (segments.first_rib() > segments.last_rib()) {
+    return FieldError(field, absl::StrCat("no rib has a number from ", segments.first_rib(), " to ",
+                                          segments.last_rib(), ": first_rib is the smaller one"));
+  }
+  for (int number = segments.first_rib(); number <= segments.last_rib(); ++number) {
+    if (EndState(scene, number) != nullptr) continue;
+    return FieldError(field, absl::StrCat("there is no end state for rib ", number, ": name ribs of end_states"));
+  }
+  return absl::OkStatus();
+}
+
+// Returns the weights of a rib in the parts of the cage.
+std::array<double, kCageParts> WeightsOf(const v1::Anatomy& rib, const v1::FreeCage& cage) {
+  const bool right = rib.side() == v1::SIDE_RIGHT;
+  std::array<double, kCageParts> weights = {};
+  if (cage.has_sides()) weights[kCageSides] = right ? 1 : -1;
+  const bool in_segment = rib.number() >= cage.segments().first_rib() && rib.number() <= cage.segments().last_rib();
+  if (cage.has_segments() && in_segment) weights[right ? kRightSegment : kLeftSegment] = 1;
+  return weights;
+}
+
 // Returns the unit axis of a rotation vector.
 Eigen::Vector3d Axis(const Eigen::Vector3d& rotation) {
   const double angle = rotation.norm();
@@ -73,6 +98,7 @@ absl::StatusOr<std::unique_ptr<Motion>> Ribs::Make(const v1::Ribs& scene, const 
   const std::string field = absl::StrCat(std::string(path), ".bodies");
   auto bodies = builder.Bodies(scene.bodies(), field);
   if (!bodies.ok()) return bodies.status();
+  if (absl::Status status = CheckSegments(scene, path); !status.ok()) return status;
   std::unique_ptr<Ribs> motion(new Ribs(name, scene.quiet_state()));
   for (const int b : *bodies) {
     const BodyModel& body = builder.model.bodies[b];
@@ -82,7 +108,7 @@ absl::StatusOr<std::unique_ptr<Motion>> Ribs::Make(const v1::Ribs& scene, const 
     const Eigen::Vector3d degrees(-end.pump_degrees(), mirror * end.bucket_degrees(), 0);
     const Eigen::Vector3d t = ToEigen(end.translation());
     motion->ribs_.push_back({body.pose, Head(body.mesh.vertices), degrees * (std::numbers::pi / 180),
-                             Eigen::Vector3d(mirror * t.x(), t.y(), t.z())});
+                             Eigen::Vector3d(mirror * t.x(), t.y(), t.z()), WeightsOf(body.anatomy, scene.free())});
   }
   if (scene.has_free()) motion->AddCoordinates(scene.free(), builder);
   builder.ReportElement("motion", name, static_cast<std::int64_t>(motion->ribs_.size()), "bodies",
@@ -100,6 +126,11 @@ void Ribs::AddCoordinates(const v1::FreeCage& scene, ModelBuilder& builder) {
   };
   pump_ = shared(kPumpHandle, scene.pump_inertia());
   bucket_ = shared(kBucketHandle, scene.bucket_inertia());
+  if (scene.has_sides()) parts_[kCageSides] = shared(kCagePartNames[kCageSides], scene.sides().inertia());
+  if (!scene.has_segments()) return;
+  for (const CagePart part : {kRightSegment, kLeftSegment}) {
+    parts_[part] = shared(kCagePartNames[part], scene.segments().inertia());
+  }
 }
 
 // Sets the pose of a rib that is turned about its head and moved, given its angular velocity [rad/s].
@@ -126,9 +157,13 @@ void Ribs::DriveByBreath(const EvalContext& at, State& state) const {
 }
 
 void Ribs::DriveByCoordinates(const EvalContext& at, State& state) const {
-  const Eigen::Vector3d k(pump_.Value(at.x), bucket_.Value(at.x), 0);
-  const Eigen::Vector3d rate(pump_.Rate(at.v), bucket_.Rate(at.v), 0);
+  CagePosition shared = {pump_.Value(at.x), bucket_.Value(at.x)}, shared_rate = {pump_.Rate(at.v), bucket_.Rate(at.v)};
+  for (size_t i = 0; i < kCageParts; ++i) {
+    if (parts_[i]) shared.parts[i] = parts_[i]->Value(at.x), shared_rate.parts[i] = parts_[i]->Rate(at.v);
+  }
   for (const Rib& rib : ribs_) {
+    const CagePosition here = shared.Of(rib.weight), change = shared_rate.Of(rib.weight);
+    const Eigen::Vector3d k(here.pump, here.bucket, 0), rate(change.pump, change.bucket, 0);
     const Eigen::Vector3d rotation = k.cwiseProduct(rib.rotation);
     const Eigen::Vector3d spin = AngularVelocity(rotation, rate.cwiseProduct(rib.rotation));
     SetPose(rib, Eigen::AngleAxisd(rotation.norm(), Axis(rotation)), spin, k.sum() / 2, rate.sum() / 2, state);

@@ -5,19 +5,24 @@
 // With the live parameter hyperinflation h, breaths start at k0 = h k_quiet and use the remaining range: k = k0 + (1 -
 // k0) k_breath, so that no breath exceeds total lung capacity. If the scene sets `free`, the two components have a k
 // each, the coordinates "pump handle" and "bucket handle", which forces move. All free ribs of a scene share them, with
-// the inertia of the first motion. The head is the mean of the vertices
+// the inertia of the first motion; ribs of a part of the cage depart from them by the part's own coordinate
+// (breathing/cage_quadratic.h). The head is the mean of the vertices
 // within 6 mm of the most medial one.
 #ifndef PHRENIC_SERVER_MECHANICS_MOTIONS_RIBS_H_
 #define PHRENIC_SERVER_MECHANICS_MOTIONS_RIBS_H_
 
+#include <array>
+#include <optional>
 #include <vector>
 
+#include "server/mechanics/breathing/cage_quadratic.h"
 #include "server/mechanics/model_builder.h"
 
 namespace phrenic {
 
 // Names of the coordinates of free ribs.
 inline constexpr char kPumpHandle[] = "pump handle", kBucketHandle[] = "bucket handle";
+inline constexpr std::array<const char*, kCageParts> kCagePartNames = {"cage sides", "right segment", "left segment"};
 
 class Ribs final : public Motion {
  public:
@@ -31,9 +36,10 @@ class Ribs final : public Motion {
  private:
   struct Rib {
     int pose;
-    Eigen::Vector3d head;         // [m]
-    Eigen::Vector3d rotation;     // at k = 1, axis times angle [rad]
-    Eigen::Vector3d translation;  // at k = 1 [m]
+    Eigen::Vector3d head;                        // [m]
+    Eigen::Vector3d rotation;                    // at k = 1, axis times angle [rad]
+    Eigen::Vector3d translation;                 // at k = 1 [m]
+    std::array<double, kCageParts> weight = {};  // of the parts of the cage
   };
   Ribs(std::string name, double quiet_state) : Motion(std::move(name)), quiet_state_(quiet_state) {}
   void AddCoordinates(const v1::FreeCage& scene, ModelBuilder& builder);
@@ -44,8 +50,9 @@ class Ribs final : public Motion {
 
   double quiet_state_;  // k at the peak of a quiet breath
   std::vector<Rib> ribs_;
-  bool free_ = false;         // moved by the coordinates ...
-  Coordinate pump_, bucket_;  // ... with k as values
+  bool free_ = false;                                        // moved by the coordinates ...
+  Coordinate pump_, bucket_;                                 // ... with k as values
+  std::array<std::optional<Coordinate>, kCageParts> parts_;  // those that the cage has
 };
 
 }  // namespace phrenic

@@ -62,6 +62,20 @@ TEST(BreathSignal, RisesOverTheInspiratoryShareAndRestsInThePause) {
   EXPECT_EQ(value(3.99), 0);
 }
 
+TEST(BreathSignal, TheGlottisClosesAtThePeakForItsShare) {
+  v1::Parameters cough = Shares(0.5, 0.4);
+  const auto closed = [&](double phase) {
+    return BreathSignalAt(Of(v1::WAVEFORM_RAISED_COSINE), cough, phase).glottis_closed;
+  };
+  EXPECT_FALSE(closed(0.55));
+  cough.set_glottis_share(0.1);
+  EXPECT_FALSE(closed(0.49));
+  EXPECT_TRUE(closed(0.51));
+  EXPECT_TRUE(closed(7.59));
+  EXPECT_FALSE(closed(7.61));
+  EXPECT_FALSE(BreathSignalAt(Of(v1::WAVEFORM_SINE), cough, 0.51).glottis_closed);
+}
+
 TEST(BreathSignal, WanesToNothingInTheMiddleOfTwelveBreaths) {
   const auto value = [](double phase) {
     return BreathSignalAt(Of(v1::WAVEFORM_RAISED_COSINE), Shares(0.5, 0, 1), phase).value;

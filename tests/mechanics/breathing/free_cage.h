@@ -55,8 +55,8 @@ inline std::string WallText() {
   return text + "} } ";
 }
 
-// Returns the scene with the given forces on the dome "sheet" and its wall "wall".
-inline std::string FreeCage(const std::string& forces) {
+// Returns the scene with the given forces on the dome "sheet" and its wall "wall", and parts of the cage.
+inline std::string FreeCage(const std::string& forces, const std::string& parts = "") {
   std::string text = "name: 'free-cage' breath { waveform: WAVEFORM_RAISED_COSINE } ";
   for (const int number : {5, 7}) {
     for (const bool right : {true, false}) absl::StrAppend(&text, RibText(number, right, number == 5 ? 0.12 : 0.06));
@@ -64,7 +64,9 @@ inline std::string FreeCage(const std::string& forces) {
   absl::StrAppend(&text, WallText(),
                   "bodies { name: 'sheet' role: ROLE_DEFORMABLE mass: 0.3 ellipsoid { radii { x: 0.1 y: 0.1 z: 0.09 } "
                   "divisions: 6 upper_half: true } } "
-                  "motions { ribs { bodies: 'ribs' free { pump_inertia: 0.01 bucket_inertia: 0.02 } "
+                  "motions { ribs { bodies: 'ribs' free { pump_inertia: 0.01 bucket_inertia: 0.02 ",
+                  parts,
+                  "} "
                   "end_states { number: 5 pump_degrees: 9 bucket_degrees: 11 } "
                   "end_states { number: 7 pump_degrees: 7 bucket_degrees: 10 } } } "
                   "motions { skin { bodies: 'wall' drivers: 'ribs' } } "

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
+#include <string_view>
 #include <vector>
 
 #include "server/mechanics/step/step.h"
@@ -20,6 +23,10 @@ constexpr char kChestWall[] = "forces { chest_wall { wall: 'wall' } } ";
 constexpr char kPressures[] =
     "forces { thorax_pressures { body: 'sheet' wall: 'wall' lungs { room: 1e-3 } abdomen { compliance: 1e-6 weight { "
     "y: 4000 } } } } ";
+
+constexpr char kParts[] = "sides {} segments { first_rib: 5 last_rib: 5 } ";
+constexpr char kReleased[] =
+    "parameters { flail_right: 1 flail_left: 0.5 right_intercostals: 0.4 cage_tilt: 0.1 left_cage_compliance: 0.5 } ";
 
 // A position that no symmetry makes simple, with driven vertices where the coordinates have them.
 State Disturbed(const Model& model, const Points& shift, double scale) {
@@ -49,8 +56,8 @@ Points ForceOf(const Model& model, const State& state) {
 
 // The work of the forces on a small displacement of free vertices and coordinates, in which inserted vertices follow,
 // is the loss of energy: reactions at the insertion and contact forces reach the cage.
-void ExpectVirtualWork(const std::string& forces, double tolerance) {
-  const auto model = CompileText(FreeCage(forces));
+void ExpectVirtualWork(const std::string& forces, double tolerance, const std::string& parts = "") {
+  const auto model = CompileText(FreeCage(forces, parts));
   ASSERT_NE(model, nullptr);
   const Points start = RandomShift(*model, 1, 4e-3);
   for (unsigned seed = 2; seed < 6; ++seed) {
@@ -67,11 +74,76 @@ void ExpectVirtualWork(const std::string& forces, double tolerance) {
 
 TEST(FreeCage, ContactObeysVirtualWork) { ExpectVirtualWork(kContact, 1e-4); }
 TEST(FreeCage, RecoilObeysVirtualWork) { ExpectVirtualWork(kChestWall, 1e-6); }
+TEST(FreeCage, ContactWithPartsThatDepartObeysVirtualWork) {
+  ExpectVirtualWork(std::string(kContact) + kReleased, 1e-4, kParts);
+}
+TEST(FreeCage, RecoilOfSidesAndSegmentsObeysVirtualWork) {
+  ExpectVirtualWork(std::string(kChestWall) + kReleased, 1e-6, kParts);
+}
+
+TEST(FreeCage, PartsThatAreHeldChangeNothing) {
+  const std::string forces =
+      std::string(kContact) + kPressures + kChestWall + "parameters { intercostal_activation: 1 } ";
+  const auto without = CompileText(FreeCage(forces)), with = CompileText(FreeCage(forces, kParts));
+  ASSERT_NE(with, nullptr);
+  const State one = RunTo(*without, 0.1, 1e-3), other = RunTo(*with, 0.1, 1e-3);
+  const Eigen::Index vertices = without->coordinates.front().vertex;
+  EXPECT_LT((one.x - other.x.leftCols(one.x.cols())).leftCols(vertices).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_GT((one.x - without->rest).leftCols(vertices).norm(), 1e-4);
+}
+
+constexpr char kTissue[] =
+    "forces { membrane { bodies: 'sheet' youngs_modulus: 1e6 poissons_ratio: 0.3 thickness: 0.003 } } "
+    "forces { friction { bodies: 'sheet' rate: 20 } } ";
+
+const Coordinate& Named(const Model& model, std::string_view name) {
+  return *std::find_if(model.coordinates.begin(), model.coordinates.end(),
+                       [name](const Coordinate& each) { return each.name == name; });
+}
+
+// A segment of broken ribs follows the pressure inside: a suction draws it in while the muscles raise the cage.
+TEST(FreeCage, ABrokenSegmentMovesAgainstTheCage) {
+  const std::string forces = std::string(kPressures) + kChestWall + kTissue;
+  const auto after = [&](const std::string& changes) {
+    const auto model =
+        CompileText(FreeCage(forces + "parameters { intercostal_activation: 1 " + changes + "} ", kParts));
+    const State state = RunTo(*model, 1, 2e-4);
+    const auto value = [&](const char* name) { return Named(*model, name).Value(state.x); };
+    return std::array{value("pump handle"), value("right segment"), value("left segment"), value("cage sides")};
+  };
+  const auto [raised, broken, whole, apart] = after("flail_right: 1 ");
+  EXPECT_GT(raised, 0.02);
+  EXPECT_LT(broken, -0.01);
+  EXPECT_EQ(whole, 0);
+  EXPECT_EQ(apart, 0);
+  EXPECT_EQ(after("")[1], 0);
+}
+
+// The side whose muscles are cut stays behind; in the mirror the other one.
+TEST(FreeCage, ASideWithoutMusclesStaysBehind) {
+  const auto apart = [](const std::string& changes) {
+    const auto model = CompileText(
+        FreeCage(std::string(kChestWall) + "parameters { intercostal_activation: 1 " + changes + "} ", kParts));
+    return Named(*model, "cage sides").Value(RunTo(*model, 1, 1e-3).x);
+  };
+  const double right = apart("right_intercostals: 0 "), left = apart("left_intercostals: 0 ");
+  EXPECT_LT(right, -0.02);
+  EXPECT_NEAR(right, -left, 1e-9 * left);
+  EXPECT_LT(apart("right_cage_compliance: 0.2 "), -0.002);
+}
+
+TEST(FreeCage, SegmentsOfRibsThatTheSceneLacksAreRefused) {
+  for (const char* bad : {"segments { first_rib: 7 last_rib: 5 } ", "segments { first_rib: 5 last_rib: 9 } "}) {
+    const auto refused = TryCompileText(FreeCage(kChestWall, bad));
+    EXPECT_NE(std::string(refused.status().message()).find("ribs.free.segments"), std::string::npos)
+        << refused.status();
+  }
+}
 
 // As above, along a direction that leaves the pressures of both sides alike, so that the cones' common face carries no
 // force. A closed airway closed at `closed_at` [m^3].
-void ExpectWorkOfPressures(const std::string& parameters, double closed_at = 0) {
-  const auto model = CompileText(FreeCage(std::string(kPressures) + "parameters { " + parameters + " }"));
+void ExpectWorkOfPressures(const std::string& parameters, double closed_at = 0, const std::string& parts = "") {
+  const auto model = CompileText(FreeCage(std::string(kPressures) + "parameters { " + parameters + " }", parts));
   ASSERT_NE(model, nullptr) << parameters;
   Points start = Points::Zero(3, model->rest.cols()), direction = start;
   for (Eigen::Index i = 0; i < start.cols(); ++i) {
@@ -83,6 +155,11 @@ void ExpectWorkOfPressures(const std::string& parameters, double closed_at = 0) 
   start(pump.axis, pump.vertex) = 0.3 * pump.scale, start(bucket.axis, bucket.vertex) = 0.5 * bucket.scale;
   direction(pump.axis, pump.vertex) = 0.2, direction(bucket.axis, bucket.vertex) = -0.3;
   direction(2, pump.vertex) = 0;
+  for (const Coordinate& each : model->coordinates) {
+    if (each.name.find("segment") == std::string::npos) continue;
+    start(each.axis, each.vertex) = -0.2 * each.scale;
+    direction(each.axis, each.vertex) = 0.4 * each.scale;
+  }
   const auto at = [&](double step) {
     State state = Disturbed(*model, start + step * direction, 1);
     if (closed_at != 0) state.scalars.q.head(2) = Eigen::Vector2d(1, closed_at);
@@ -102,6 +179,10 @@ TEST(FreeCage, PressuresObeyVirtualWork) {
         "posture: POSTURE_UPRIGHT", "posture: POSTURE_PRONE"}) {
     ExpectWorkOfPressures(parameters);
   }
+}
+
+TEST(FreeCage, PressuresOnSegmentsObeyVirtualWork) {
+  ExpectWorkOfPressures("flail_right: 1 flail_left: 1", 0, "segments { first_rib: 5 last_rib: 5 } ");
 }
 
 TEST(FreeCage, GasBehindAClosedAirwayObeysVirtualWork) { ExpectWorkOfPressures("airway_closed: true", 2e-4); }
