@@ -135,7 +135,7 @@ export class App {
       new ForceQueries(api, sessionId),
     );
     this.cameraSharing = new CameraSharing(api, sessionId, this.participation, this.viewer.rig, clock);
-    this.graphs = new GraphsPanel(() => sessionId, this.tools.trackedVertices);
+    this.graphs = new GraphsPanel(() => sessionId, this.tools.ownSeries);
     this.secondView = this.openSecondView();
     this.student = this.openStudentView();
     window.phrenic = testHook(() => this.bodies.value, this.frames, this.viewer);
@@ -227,7 +227,7 @@ export class App {
     elementById("cards").append(...tools.cards, this.comparisonCard.element);
     new ResizeObserver(() => this.resize()).observe(elementById("cards"));
     const drop = dropZone(document.body, (file) => void this.comparisons.compare(file));
-    elementById("stage").append(drop, tools.forceLabel, tools.structures.label);
+    elementById("stage").append(drop, tools.forceLabel, tools.structures.label, ...tools.measuring.overlays);
     if (this.secondView !== undefined) {
       elementById("stage").classList.add("split");
       elementById("view").after(this.secondView.element);
@@ -252,6 +252,7 @@ export class App {
       presetComparison(controller, this.presets, this.target.open),
       controlledGroup(this.participation, ...sections),
       this.tools.panel,
+      this.tools.measuring.panel.element,
       layersPanel(layerStyles),
       controlledGroup(this.participation, solver),
       encodingPanel((codec) => this.connection.setCodec(codec)),
@@ -270,7 +271,7 @@ export class App {
     const { controller, viewer, report } = this;
     const { open, sessionId } = this.target;
     const photograph = async () => {
-      const picture = await viewer.capture();
+      const picture = await viewer.capture((pen, ratio) => this.tools.annotations.paint(pen, ratio));
       if (picture !== null) download(`${sessionId}.png`, picture);
     };
     const rows = [takeHomeRow(new Exports(this.api, sessionId))];
@@ -294,11 +295,24 @@ export class App {
         { key: "f", description: "Front view", run: () => this.tools.visit("front") },
         ...this.viewKeys(),
         { key: "/", description: "Find a structure", run: () => elementById("find-structure").focus() },
+        { key: "m", description: "Measure a distance", run: () => this.tools.measuring.start() },
+        {
+          key: "Escape",
+          description: "End measuring",
+          when: () => this.tools.measuring.measurements.tool.value !== undefined,
+          run: () => this.tools.measuring.measurements.use(undefined),
+        },
         {
           key: "Escape",
           description: "Show all structures again",
           when: () => this.tools.structures.isolated.value !== undefined,
           run: () => this.tools.structures.showAll(),
+        },
+        {
+          key: "Escape",
+          description: "Remove all measurements",
+          when: () => this.tools.measuring.measurements.all.value.length > 0,
+          run: () => this.tools.measuring.measurements.clear(),
         },
         { key: "p", description: "Save a screenshot", run: () => void photograph() },
         { key: "s", description: "Share, copy, compare", run: () => share.show() },

@@ -22,8 +22,9 @@ export class SceneStructures {
   constructor(
     private readonly viewer: Viewer,
     private readonly layerStyles: LayerStyles,
+    measure?: (structure: Structure) => void,
   ) {
-    const actions = { isolate: (each: Structure) => this.isolate(each), showAll: () => this.showAll() };
+    const actions = { isolate: (each: Structure) => this.isolate(each), showAll: () => this.showAll(), measure };
     this.card = structureCard(this.chosen, this.isolated, actions);
     this.search = structureSearch({
       search: (text) => this.structures.search(text),
@@ -48,6 +49,11 @@ export class SceneStructures {
   /** Shows the name of the structure at a vertex; closes the card if it has none. */
   choose(vertex: VertexRef | undefined): void {
     this.chosen.set(vertex && this.structures.at(vertex));
+  }
+
+  /** Returns the structure at a vertex; undefined if it has no name. */
+  at(vertex: VertexRef): Structure | undefined {
+    return this.structures.at(vertex);
   }
 
   /** Shows all structures again, from where they were seen before. */

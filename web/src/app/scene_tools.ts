@@ -9,6 +9,8 @@ import { make } from "../dom/elements";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import type { Body, FrameArrays } from "../geometry/bodies";
 import type { CameraPose } from "../geometry/camera_pose";
+import type { VertexRef } from "../geometry/vertices";
+import type { TrackedSeries } from "../panels/readings/graphs";
 import { appearancePanel } from "../panels/view/appearance_panel";
 import { coloringCard } from "../panels/view/coloring_card";
 import { OrientationCube } from "../panels/view/orientation_cube";
@@ -24,6 +26,7 @@ import { viewNames } from "../viewer/named_views";
 import type { OverlayKind } from "../viewer/overlays";
 import type { Viewer } from "../viewer/viewer";
 import { type Viewpoint, viewpoints } from "../viewer/viewpoints";
+import { Measuring } from "./measuring";
 import { SceneStructures } from "./scene_structures";
 
 /** The viewer's local tools: colours, ghost, labels, orientation cube, clipping, and picked and tracked vertices. */
@@ -43,6 +46,7 @@ export class SceneTools {
   readonly ghost = new Signal<GhostKind>("none");
   readonly quality = rememberedQuality();
   readonly structures: SceneStructures;
+  readonly measuring: Measuring;
   /** The named views of the scene. */
   readonly viewpoints = new Signal<Viewpoint[]>([]);
   /** The cut of the named view that is shown. */
@@ -68,7 +72,13 @@ export class SceneTools {
     this.pickCard = new PickCard(this.trackedVertices, forces.onVertex);
     this.annotations = new Annotations(viewer);
     this.cube = new OrientationCube((view) => this.visit(view));
-    this.structures = new SceneStructures(viewer, layerStyles);
+    this.structures = new SceneStructures(viewer, layerStyles, (each) =>
+      this.measuring.measurements.measureSurface(each),
+    );
+    const pickAt = viewer.enablePicking((ref) => this.pick(ref));
+    this.measuring = new Measuring(viewer.canvas, this.annotations, () => this.bodies, this.structures, pickAt);
+    for (const changes of [this.measuring.measurements.all, this.measuring.measurements.picked])
+      changes.subscribe(() => this.updateMarkers());
     this.cards = [coloringCard(this.coloring), this.structures.card, this.pickCard.element];
     const { labels, ghost, quality } = this;
     this.panel = appearancePanel({
@@ -103,10 +113,6 @@ export class SceneTools {
     comparisons.surfaceVisible.subscribe(() => this.updateComparedSurface());
     forces.magnitudes.subscribe(() => this.updateColors());
     this.structures.isolated.subscribe((structure) => structure && this.trackedVertices.picked.set(undefined));
-    viewer.enablePicking((ref) => {
-      this.trackedVertices.picked.set(ref);
-      this.structures.choose(ref);
-    });
     this.trackedVertices.picked.subscribe(() => {
       this.replayForces();
       this.updateMarkers();
@@ -123,6 +129,7 @@ export class SceneTools {
     this.coloring.start(this.tissue);
     void this.forces.start(this.tissue[0]?.name);
     this.trackedVertices.clear();
+    this.measuring.measurements.clear();
     if (this.ghost.value === "now") this.ghost.set("none");
     this.ghosts.start(this.tissue);
     // A diagram shows which of its edges are rigid.
@@ -134,6 +141,19 @@ export class SceneTools {
   showBeside(arrays: FrameArrays | undefined): void {
     this.ghosts.showBeside(arrays);
   }
+
+  /** Measures at a picked vertex, or shows it and its structure. */
+  private pick(ref: VertexRef | undefined): void {
+    if (this.measuring.take(ref)) return;
+    this.trackedVertices.picked.set(ref);
+    this.structures.choose(ref);
+  }
+
+  /** The series of vertices and measurements that this viewer plots. */
+  readonly ownSeries = (): TrackedSeries[] => {
+    const { spec, history } = this.trackedVertices;
+    return [...(spec === undefined ? [] : [{ spec, history }]), ...this.measuring.measurements.graphs];
+  };
 
   /** Shows a view by its name; unknown names change nothing. Its cut replaces that of the view before. */
   visit(name: string): void {
@@ -165,6 +185,7 @@ export class SceneTools {
     this.time = time;
     this.updateFields();
     this.trackedVertices.receive(time, arrays);
+    if (this.replayTime === undefined) this.measuring.measurements.receive(time, arrays);
     if (this.coloring.field.value !== undefined) this.updateColors();
     this.updateMarkers();
   }
@@ -178,6 +199,8 @@ export class SceneTools {
   /** Updates what depends on the camera. */
   afterDraw(orientation: ViewOrientation): void {
     this.cube.show(orientation);
+    const arrays = this.arrays();
+    if (arrays !== undefined) this.measuring.draw(arrays);
     this.annotations.draw();
   }
 
@@ -212,6 +235,7 @@ export class SceneTools {
   updateReadings(): void {
     const arrays = this.arrays();
     this.pickCard.show(arrays);
+    this.measuring.panel.show(arrays);
     if (arrays !== undefined && this.liveDistance?.update(this.bodies, arrays, () => performance.now()))
       this.updateColors();
   }
@@ -240,6 +264,7 @@ export class SceneTools {
 
   private updateMarkers(): void {
     const arrays = this.arrays();
-    if (arrays !== undefined) this.viewer.setMarkers(this.trackedVertices.markers(arrays));
+    if (arrays === undefined) return;
+    this.viewer.setMarkers([...this.trackedVertices.markers(arrays), ...this.measuring.markers(arrays)]);
   }
 }

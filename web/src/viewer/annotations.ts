@@ -2,6 +2,7 @@ import { scaleLinear } from "d3-scale";
 import * as THREE from "three";
 import type { BodyView } from "./body_view";
 import { planeAxes } from "./named_views";
+import { paintSvg } from "./svg_painter";
 import type { Viewer } from "./viewer";
 
 /** Distance of a label from its anchor, and between labels [CSS pixels]. */
@@ -17,17 +18,27 @@ export interface LabelledLayer {
   visible: boolean;
 }
 
-/** An SVG over the canvas with the names of the layers and, for planar scenes, axes. */
+/** Measured points and what is measured at them. */
+export interface MeasuredPoints {
+  /** Positions [m]: one for a surface, two for a distance, three for an angle, whose corner is the second. */
+  places: [number, number, number][];
+  color: string;
+  label: string;
+}
+
+/** An SVG over the canvas with the names of the layers, measurements and, for planar scenes, axes. */
 export class Annotations {
   readonly element = svg("svg", { class: "annotations" });
   private readonly names = svg("g", { class: "names" });
   private readonly axes = svg("g", { class: "axes" });
+  private readonly measures = svg("g", { class: "measures" });
+  private measured: MeasuredPoints[] = [];
   private anchors: { view: BodyView; vertex: number; layer: LabelledLayer }[] = [];
   private labels = false;
 
   constructor(private readonly viewer: Viewer) {
     this.element.setAttribute("aria-hidden", "true");
-    this.element.append(this.axes, this.names);
+    this.element.append(this.axes, this.measures, this.names);
   }
 
   /** Sets the layers, for another scene or another visibility. */
@@ -42,10 +53,32 @@ export class Annotations {
     this.draw();
   }
 
+  /** Sets the measurements that the next drawing shows. */
+  setMeasured(measured: MeasuredPoints[]): void {
+    this.measured = measured;
+  }
+
+  /** Draws the annotations over a picture of the canvas. */
+  paint(pen: CanvasRenderingContext2D, ratio: number): void {
+    paintSvg(this.element, pen, ratio);
+  }
+
   /** Updates the annotations to the current camera. */
   draw(): void {
+    this.measures.replaceChildren(...this.measured.flatMap((each) => this.drawMeasured(each)));
     this.names.replaceChildren(...(this.labels ? this.drawNames() : []));
     this.axes.replaceChildren(...this.drawAxes());
+  }
+
+  private drawMeasured({ places, color, label }: MeasuredPoints): SVGElement[] {
+    const ends = places.map((place) => this.viewer.rig.project(new THREE.Vector3(...place)));
+    if (ends.length === 0) return [];
+    const line = svg("polyline", { points: ends.map((end) => end.join(",")).join(" ") });
+    line.style.stroke = color;
+    // The label lies at the corner of an angle, and beside the middle of a distance.
+    const at = ends.length === 2 ? [0, 1].map((k) => (ends[0][k] + ends[1][k]) / 2) : ends[ends.length >> 1];
+    const side = at[0] + 9 + letterWidth * label.length > this.element.clientWidth ? -1 : 1;
+    return [line, svgText(at[0] + 9 * side, at[1] - 9, label, side > 0 ? "start" : "end", color)];
   }
 
   private drawNames(): SVGElement[] {
@@ -147,8 +180,9 @@ function line([x1, y1]: [number, number], [x2, y2]: [number, number]): SVGElemen
   return svg("line", { x1, y1, x2, y2 });
 }
 
-function svgText(x: number, y: number, text: string, anchor: string): SVGElement {
+function svgText(x: number, y: number, text: string, anchor: string, color?: string): SVGElement {
   const element = svg("text", { x, y, "text-anchor": anchor });
+  if (color !== undefined) element.style.fill = color;
   element.textContent = text;
   return element;
 }
