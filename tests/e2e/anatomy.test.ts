@@ -89,3 +89,47 @@ describe("measuring", () => {
     expect(viewer.consoleErrors).toEqual([]);
   });
 });
+
+describe("names beside the scene", () => {
+  const count = () => viewer.page.locator(".name-label").count();
+
+  test("NeitherOverlapNorLeaveTheStage", async () => {
+    const { page } = viewer;
+    await page.focus("#view");
+    await page.keyboard.press("n");
+    await expect.poll(count).toBeGreaterThan(15);
+    expect(await page.isChecked("#show-labels")).toBe(true);
+    const stage = (await page.locator("#view").boundingBox())!;
+    const boxes = await Promise.all((await page.locator(".name-label").all()).map((each) => each.boundingBox()));
+    boxes.forEach((a, i) => {
+      expect(a!.x).toBeGreaterThanOrEqual(stage.x);
+      expect(a!.x + a!.width).toBeLessThanOrEqual(stage.x + stage.width);
+      for (const b of boxes.slice(i + 1))
+        expect(Math.abs(a!.x - b!.x) >= a!.width || Math.abs(a!.y - b!.y) > a!.height - 0.01).toBe(true);
+    });
+    expect(await page.locator(".names polyline").count()).toBe(boxes.length);
+    expect(await viewer.violations()).toEqual([]);
+    await viewer.saveScreenshot("names");
+  });
+
+  test("AreHiddenWhileTheCameraMovesAndPlacedAgain", async () => {
+    const { page } = viewer;
+    await page.focus("#view");
+    await page.keyboard.press("ArrowLeft");
+    await page.waitForFunction(() => document.querySelector<HTMLElement>(".name-labels")!.hidden);
+    await expect.poll(count).toBeGreaterThan(15);
+  });
+
+  test("ChooseTheirStructureByKeyboard", async () => {
+    const { page } = viewer;
+    await page.locator('.name-label[tabindex="0"]').focus();
+    await page.keyboard.press("ArrowDown");
+    const name = await page.evaluate(() => document.activeElement?.firstElementChild?.textContent);
+    await page.keyboard.press("Enter");
+    await page.waitForSelector("#structure:not([hidden])");
+    expect(await page.textContent("#structure h2")).toBe(name);
+    await page.uncheck("#show-labels");
+    await expect.poll(count).toBe(0);
+    expect(viewer.consoleErrors).toEqual([]);
+  });
+});

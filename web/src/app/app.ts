@@ -150,6 +150,7 @@ export class App {
       for (const { layer, opacity, visible } of styles) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
       this.connection.setBodies(this.layerStyles.neededBodies(this.bodies.value));
     });
+    this.tools.labels.subscribe(() => this.resize());
     this.comparisons.result.subscribe((result) => result && this.showLayerOf(result.body));
     // Playing ends the replay.
     let playing = true;
@@ -182,7 +183,7 @@ export class App {
         this.secondView?.followCamera();
         this.cameraSharing.sendIfMoved();
       },
-      insets: stageInsets,
+      insets: () => stageInsets(this.tools.labels.value),
       reducedMotion: () => reduced.matches,
       simplifier: () => import("../geometry/simplified"),
     };
@@ -234,7 +235,7 @@ export class App {
       elementById("stage").append(this.secondView.headers.element);
       new ResizeObserver(() => this.resize()).observe(this.secondView.headers.element);
     }
-    elementById("annotations-slot").append(tools.annotations.element);
+    elementById("annotations-slot").append(tools.annotations.element, tools.nameLabels);
     elementById("cube-slot").append(tools.cube.element);
     elementById("playback-slot").append(controlledGroup(this.participation, playbackPanel(controller)));
     elementById("readout-slot").append(this.timeline.element, this.readout.element);
@@ -271,7 +272,7 @@ export class App {
     const { controller, viewer, report } = this;
     const { open, sessionId } = this.target;
     const photograph = async () => {
-      const picture = await viewer.capture((pen, ratio) => this.tools.annotations.paint(pen, ratio));
+      const picture = await viewer.capture((pen, ratio) => this.tools.paint(pen, ratio));
       if (picture !== null) download(`${sessionId}.png`, picture);
     };
     const rows = [takeHomeRow(new Exports(this.api, sessionId))];
@@ -295,6 +296,7 @@ export class App {
         { key: "f", description: "Front view", run: () => this.tools.visit("front") },
         ...this.viewKeys(),
         { key: "/", description: "Find a structure", run: () => elementById("find-structure").focus() },
+        { key: "n", description: "Names of structures", run: () => this.tools.labels.set(!this.tools.labels.value) },
         { key: "m", description: "Measure a distance", run: () => this.tools.measuring.start() },
         {
           key: "Escape",

@@ -6,6 +6,7 @@ import type { VertexRef } from "../geometry/vertices";
 import { structureCard } from "../panels/view/structure_card";
 import { structureSearch } from "../panels/view/structure_search";
 import { Signal } from "../state/signal";
+import type { Name } from "../viewer/names";
 import type { Viewer } from "../viewer/viewer";
 
 /** The names of structures: beside the resting pointer, in a card after a click, and in a search field. */
@@ -49,6 +50,16 @@ export class SceneStructures {
   /** Shows the name of the structure at a vertex; closes the card if it has none. */
   choose(vertex: VertexRef | undefined): void {
     this.chosen.set(vertex && this.structures.at(vertex));
+  }
+
+  /** Returns the name of the structure at a vertex, or of its layer in scenes without structures. */
+  nameAt(vertex: VertexRef): Name | undefined {
+    if (this.structures.all.length > 0) {
+      const structure = this.structures.at(vertex);
+      return structure && { name: structure.name, latin: structure.latin, structure: true };
+    }
+    const layer = this.bodies.find(({ name }) => name === vertex.body)?.layerTitle;
+    return layer === undefined ? undefined : { name: layer, latin: "", structure: false };
   }
 
   /** Returns the structure at a vertex; undefined if it has no name. */

@@ -19,14 +19,16 @@ import { rememberedQuality } from "../panels/view/quality_row";
 import type { Comparisons } from "../session/comparisons";
 import type { ForceQueries, ForceRequest } from "../session/force_queries";
 import { Signal } from "../state/signal";
-import { Annotations } from "../viewer/annotations";
+import type { Annotations } from "../viewer/annotations";
 import type { ViewOrientation } from "../viewer/camera_rig";
 import type { Cut } from "../viewer/clipping";
 import { viewNames } from "../viewer/named_views";
+import { paintTexts } from "../viewer/overlay_painter";
 import type { OverlayKind } from "../viewer/overlays";
 import type { Viewer } from "../viewer/viewer";
 import { type Viewpoint, viewpoints } from "../viewer/viewpoints";
 import { Measuring } from "./measuring";
+import { namedAnnotations } from "./named_scene";
 import { SceneStructures } from "./scene_structures";
 
 /** The viewer's local tools: colours, ghost, labels, orientation cube, clipping, and picked and tracked vertices. */
@@ -37,6 +39,7 @@ export class SceneTools {
   readonly cards: HTMLElement[];
   readonly cube: OrientationCube;
   readonly annotations: Annotations;
+  readonly nameLabels: HTMLElement;
   readonly forceLabel = make("output", { id: "force", hidden: true });
   readonly coloring: Coloring;
   /** Settings that a second view shares. */
@@ -70,11 +73,12 @@ export class SceneTools {
     this.coloring = new Coloring(forces);
     this.ghosts = new GhostSelector(viewer, arrays, this.ghost);
     this.pickCard = new PickCard(this.trackedVertices, forces.onVertex);
-    this.annotations = new Annotations(viewer);
     this.cube = new OrientationCube((view) => this.visit(view));
     this.structures = new SceneStructures(viewer, layerStyles, (each) =>
       this.measuring.measurements.measureSurface(each),
     );
+    const { annotations, nameLabels } = namedAnnotations(viewer, { ...this, layerStyles });
+    [this.annotations, this.nameLabels] = [annotations, nameLabels];
     const pickAt = viewer.enablePicking((ref) => this.pick(ref));
     this.measuring = new Measuring(viewer.canvas, this.annotations, () => this.bodies, this.structures, pickAt);
     for (const changes of [this.measuring.measurements.all, this.measuring.measurements.picked])
@@ -94,10 +98,7 @@ export class SceneTools {
     });
     this.cut.subscribe((cut) => {
       viewer.setCut(cut);
-      this.annotations.setLayers(layerStyles.all.value);
     });
-    labels.subscribe((on) => this.annotations.setLabels(on));
-    layerStyles.all.subscribe((all) => this.annotations.setLayers(all));
     this.overlays.subscribe((shown) => viewer.showOverlays(shown));
     quality.subscribe((chosen) => viewer.setQuality(chosen));
     this.coloring.field.subscribe(() => {
@@ -202,6 +203,12 @@ export class SceneTools {
     const arrays = this.arrays();
     if (arrays !== undefined) this.measuring.draw(arrays);
     this.annotations.draw();
+  }
+
+  /** Draws measurements, axes and names over a picture of the canvas. */
+  paint(pen: CanvasRenderingContext2D, ratio: number): void {
+    this.annotations.paint(pen, ratio);
+    paintTexts(this.nameLabels, pen, ratio);
   }
 
   /** Queries the forces that are shown. `seen` identifies the state that the viewer received last. */

@@ -181,6 +181,18 @@ export class Viewer {
     return this.box;
   }
 
+  /** Width and height of the canvas [CSS pixels]. */
+  get size(): [width: number, height: number] {
+    return [this.canvas.clientWidth, this.canvas.clientHeight];
+  }
+
+  /** The part of the canvas that panels do not cover [CSS pixels]. */
+  get freePart(): { left: number; right: number; top: number; bottom: number } {
+    const [width, height] = this.size;
+    const { left, top, bottom } = this.host.insets();
+    return { left, right: width, top, bottom: height - bottom };
+  }
+
   /** True if the current cut clips this position. */
   isClipped(place: THREE.Vector3): boolean {
     return this.renderer.clippingPlanes.some((plane) => plane.distanceToPoint(place) < 0);

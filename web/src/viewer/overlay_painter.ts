@@ -12,6 +12,30 @@ export function paintSvg(element: SVGSVGElement, pen: CanvasRenderingContext2D, 
   pen.restore();
 }
 
+/**
+ * Draws the texts of the innermost spans of an element over the page onto a canvas, word by word where they are; words that
+ * the element cuts off are left out.
+ */
+export function paintTexts(element: HTMLElement, pen: CanvasRenderingContext2D, ratio: number): void {
+  const origin = element.getBoundingClientRect();
+  const range = document.createRange();
+  pen.save();
+  pen.scale(ratio, ratio);
+  pen.textBaseline = "middle";
+  for (const span of element.querySelectorAll<HTMLElement>("span:not(:has(*))")) {
+    const { fontStyle, fontWeight, fontSize, fontFamily, color } = getComputedStyle(span);
+    [pen.font, pen.fillStyle] = [`${fontStyle} ${fontWeight} ${fontSize} ${fontFamily}`, color];
+    const end = span.getBoundingClientRect().right + 1;
+    for (const { 0: word, index } of (span.textContent ?? "").matchAll(/\S+/g)) {
+      range.setStart(span.firstChild!, index);
+      range.setEnd(span.firstChild!, index + word.length);
+      const { left, right, top, height } = range.getBoundingClientRect();
+      if (right <= end) pen.fillText(word, left - origin.left, top + height / 2 - origin.top);
+    }
+  }
+  pen.restore();
+}
+
 const numberOf = (shape: SVGElement, name: string) => Number(shape.getAttribute(name));
 
 function paintText(shape: SVGElement, style: CSSStyleDeclaration, pen: CanvasRenderingContext2D): void {
