@@ -76,9 +76,7 @@ describe("labels of random points", () => {
   test("AreAsManyAsFitTheHeaviestFirst", () => {
     for (const { anchors, frame, spacing } of cases) {
       const places = placeLabels(anchors, frame, spacing);
-      const within = anchors.map(
-        ({ x, y }) => x >= frame.left && x <= frame.right && y >= frame.top && y <= frame.bottom,
-      );
+      const within = anchors.map(({ x }) => x >= frame.left && x <= frame.right);
       const room = 2 * Math.floor((frame.bottom - frame.top) / spacing);
       const count = places.filter((place) => place !== undefined).length;
       expect(count).toBe(Math.min(room, within.filter(Boolean).length));

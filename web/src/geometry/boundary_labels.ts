@@ -24,7 +24,7 @@ export interface LabelPlace {
 /**
  * Places labels left and right of a scene (boundary labelling, Bekos et al. 2007): a vertical line divides the points,
  * labels of one side keep the order of their points as far as possible, are `spacing` apart, and lines do not cross.
- * Returns a place for each point; undefined for points outside of the frame and for the lightest ones if not all fit.
+ * Returns a place for each point; undefined for points left or right of the frame and for the lightest ones if not all fit.
  */
 export function placeLabels(
   anchors: readonly LabelAnchor[],
@@ -35,7 +35,7 @@ export function placeLabels(
   const capacity = Math.max(0, Math.floor((frame.bottom - frame.top) / spacing));
   const chosen = anchors
     .map((_, i) => i)
-    .filter((i) => isWithin(anchors[i], frame))
+    .filter((i) => anchors[i].x >= frame.left && anchors[i].x <= frame.right)
     .sort((i, k) => anchors[k].weight - anchors[i].weight)
     .slice(0, 2 * capacity)
     .sort((i, k) => anchors[i].x - anchors[k].x);
@@ -55,10 +55,6 @@ export function placeLabels(
     own.forEach((i, k) => (places[i] = { side, x, y: heights[k] }));
   }
   return places;
-}
-
-function isWithin({ x, y }: LabelAnchor, { left, right, top, bottom }: LabelFrame): boolean {
-  return x >= left && x <= right && y >= top && y <= bottom;
 }
 
 /** Returns the heights of the labels of one side, whose lines end at `x`. */

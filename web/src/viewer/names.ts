@@ -37,8 +37,10 @@ const restTime = 250;
 const still = 1e-4;
 /** Room for the letters at the edges of the view, and for bar and cube at its top [CSS pixels]. */
 const [edge, head] = [30, 76];
-/** Height of a label of two lines, and how far labels reach above and below the points [CSS pixels]. */
-const [labelHeight, reach] = [36, 60];
+/** Heights of labels of two lines, and of three in a column narrower than this [CSS pixels]. */
+const [twoLines, threeLines, narrow] = [36, 45, 88];
+/** How far labels reach above and below the points [CSS pixels]. */
+const reach = 60;
 
 /** Returns the width of a column of names in a free part of the canvas that is this wide, with its edge [CSS pixels]. */
 export function nameColumn(width: number): number {
@@ -100,22 +102,21 @@ export class Names {
   private place(): void {
     const { left, right, top, bottom } = this.viewer.freePart;
     const column = nameColumn(right - left);
-    const found = this.visibleNames().map((each) => {
+    const found = this.visibleNames().flatMap((each) => {
       const [x, y] = this.viewer.rig.project(this.placeOf(each.ref));
-      return { ...each, anchor: { x, y, weight: each.count } };
+      return y < 0 || y > bottom ? [] : [{ ...each, anchor: { x, y, weight: each.count } }];
     });
     const anchors = found.map(({ anchor }) => anchor);
     const heights = anchors.map(({ y }) => y);
-    const frame = {
-      left: left + column,
-      right: right - column,
-      top: Math.max(top, head, Math.min(...heights) - reach),
-      bottom: Math.min(bottom - 6, Math.max(...heights) + reach),
-    };
-    const places = placeLabels(anchors, frame, labelHeight);
+    const width = column - edge;
+    const height = width < narrow ? threeLines : twoLines;
+    const first = Math.max(top, head, Math.min(...heights) - reach);
+    const last = Math.min(bottom - 6, Math.max(...heights, first) + reach);
+    const frame = { left: left + column, right: right - column, top: first, bottom: last };
+    const places = placeLabels(anchors, frame, height);
     const labels = found.flatMap(({ name, ref }, i): NameLabel[] => {
       const place = places[i];
-      return place === undefined ? [] : [{ ...name, ...place, ref, width: column - edge, height: labelHeight }];
+      return place === undefined ? [] : [{ ...name, ...place, ref, width, height }];
     });
     // Tab goes down the left column, then down the right one.
     this.change(labels.sort((a, b) => a.side.localeCompare(b.side) || a.y - b.y));

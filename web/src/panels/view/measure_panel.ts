@@ -20,7 +20,8 @@ const tools: [MeasureTool, string, string][] = [
 export class MeasurePanel {
   readonly element: HTMLElement;
   /** Says over the stage what the next click does. */
-  readonly hint = make("output", { id: "measure-hint", hidden: true });
+  readonly hint = make("div", { id: "measure-hint", hidden: true });
+  private readonly next = make("output");
   private readonly rows = make("tbody");
   private readonly clear: HTMLButtonElement;
 
@@ -35,6 +36,9 @@ export class MeasurePanel {
       this.rows.replaceChildren(...all.map((each) => this.row(each)));
       this.clear.hidden = table.hidden = all.length === 0;
     });
+    const keys = make("p", {}, "or move the cross with the arrow keys and press Enter");
+    const end = button("End measuring (Escape)", () => measurements.use(undefined), "End");
+    this.hint.append(make("div", {}, this.next, keys), end);
     const sayNext = () => this.sayNext();
     measurements.tool.subscribe(sayNext);
     measurements.picked.subscribe(sayNext);
@@ -76,8 +80,7 @@ export class MeasurePanel {
     const count = pointsOf[tool.value];
     const next = tool.value === "surface" ? "a structure" : `point ${picked.value.length + 1} of ${count}`;
     const [, label] = tools.find(([each]) => each === tool.value)!;
-    this.hint.textContent = `${label}: click ${next}`;
-    this.hint.append(make("span", {}, "or move the cross with the arrow keys and press Enter. Escape ends."));
+    this.next.textContent = `${label}: click ${next}`;
   }
 }
 

@@ -36,6 +36,7 @@ export class NameLabels {
       ? make("button", { type: "button", title: latin, onclick: () => this.choose(ref) }, ...words)
       : make("span", {}, ...words);
     element.className = `name-label ${side}`;
+    element.classList.toggle("narrow", height > 40);
     Object.assign(element.style, {
       left: `${side === "left" ? x - width : x}px`,
       top: `${y - height / 2}px`,
