@@ -48,7 +48,7 @@ export class MeasurePanel {
   show(arrays: FrameArrays | undefined): void {
     if (arrays === undefined) return;
     this.measurements.all.value.forEach((each, i) => {
-      const cell = this.rows.rows[i].cells[1];
+      const cell = this.rows.children[i].children[1];
       const text = readingOf(this.measurements, each, arrays).join("\n");
       if (cell.textContent !== text) cell.textContent = text;
     });
