@@ -135,7 +135,7 @@ export class App {
       new ForceQueries(api, sessionId),
     );
     this.cameraSharing = new CameraSharing(api, sessionId, this.participation, this.viewer.rig, clock);
-    this.graphs = new GraphsPanel(() => sessionId, this.tools.trackedVertices);
+    this.graphs = new GraphsPanel(() => sessionId, this.tools.ownSeries);
     this.secondView = this.openSecondView();
     this.student = this.openStudentView();
     window.phrenic = testHook(() => this.bodies.value, this.frames, this.viewer);
@@ -150,6 +150,7 @@ export class App {
       for (const { layer, opacity, visible } of styles) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
       this.connection.setBodies(this.layerStyles.neededBodies(this.bodies.value));
     });
+    this.tools.labels.subscribe(() => this.resize());
     this.comparisons.result.subscribe((result) => result && this.showLayerOf(result.body));
     // Playing ends the replay.
     let playing = true;
@@ -182,7 +183,7 @@ export class App {
         this.secondView?.followCamera();
         this.cameraSharing.sendIfMoved();
       },
-      insets: stageInsets,
+      insets: () => stageInsets(this.tools.labels.value),
       reducedMotion: () => reduced.matches,
       simplifier: () => import("../geometry/simplified"),
     };
@@ -227,14 +228,14 @@ export class App {
     elementById("cards").append(...tools.cards, this.comparisonCard.element);
     new ResizeObserver(() => this.resize()).observe(elementById("cards"));
     const drop = dropZone(document.body, (file) => void this.comparisons.compare(file));
-    elementById("stage").append(drop, tools.forceLabel, tools.structures.label);
+    elementById("stage").append(drop, tools.forceLabel, tools.structures.label, ...tools.measuring.overlays);
     if (this.secondView !== undefined) {
       elementById("stage").classList.add("split");
       elementById("view").after(this.secondView.element);
       elementById("stage").append(this.secondView.headers.element);
       new ResizeObserver(() => this.resize()).observe(this.secondView.headers.element);
     }
-    elementById("annotations-slot").append(tools.annotations.element);
+    elementById("annotations-slot").append(tools.annotations.element, tools.nameLabels);
     elementById("cube-slot").append(tools.cube.element);
     elementById("playback-slot").append(controlledGroup(this.participation, playbackPanel(controller)));
     elementById("readout-slot").append(this.timeline.element, this.readout.element);
@@ -252,6 +253,7 @@ export class App {
       presetComparison(controller, this.presets, this.target.open),
       controlledGroup(this.participation, ...sections),
       this.tools.panel,
+      this.tools.measuring.panel.element,
       layersPanel(layerStyles),
       controlledGroup(this.participation, solver),
       encodingPanel((codec) => this.connection.setCodec(codec)),
@@ -270,7 +272,7 @@ export class App {
     const { controller, viewer, report } = this;
     const { open, sessionId } = this.target;
     const photograph = async () => {
-      const picture = await viewer.capture();
+      const picture = await viewer.capture((pen, ratio) => this.tools.paint(pen, ratio));
       if (picture !== null) download(`${sessionId}.png`, picture);
     };
     const rows = [takeHomeRow(new Exports(this.api, sessionId))];
@@ -294,11 +296,25 @@ export class App {
         { key: "f", description: "Front view", run: () => this.tools.visit("front") },
         ...this.viewKeys(),
         { key: "/", description: "Find a structure", run: () => elementById("find-structure").focus() },
+        { key: "n", description: "Names of structures", run: () => this.tools.labels.set(!this.tools.labels.value) },
+        { key: "m", description: "Measure a distance", run: () => this.tools.measuring.start() },
+        {
+          key: "Escape",
+          description: "End measuring",
+          when: () => this.tools.measuring.measurements.tool.value !== undefined,
+          run: () => this.tools.measuring.measurements.use(undefined),
+        },
         {
           key: "Escape",
           description: "Show all structures again",
           when: () => this.tools.structures.isolated.value !== undefined,
           run: () => this.tools.structures.showAll(),
+        },
+        {
+          key: "Escape",
+          description: "Remove all measurements",
+          when: () => this.tools.measuring.measurements.all.value.length > 0,
+          run: () => this.tools.measuring.measurements.clear(),
         },
         { key: "p", description: "Save a screenshot", run: () => void photograph() },
         { key: "s", description: "Share, copy, compare", run: () => share.show() },

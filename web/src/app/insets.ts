@@ -1,11 +1,12 @@
 import { elementById } from "../dom/elements";
 import type { Insets } from "../viewer/camera_rig";
+import { nameColumn } from "../viewer/names";
 
 /**
  * Returns the parts of the stage that view buttons, headers, dock and cards cover [CSS pixels], and passes them to the
- * style sheet as custom properties.
+ * style sheet as custom properties. `named` leaves room for the names beside the scene.
  */
-export function stageInsets(): Insets {
+export function stageInsets(named: boolean): Insets {
   const stage = elementById("stage");
   const width = elementById("view").clientWidth;
   const bottom = stage.clientHeight - elementById("dock").offsetTop;
@@ -20,5 +21,5 @@ export function stageInsets(): Insets {
   // A short bar lies beside the narrow top of the scene.
   const bar = elementById("views");
   const top = bar.offsetLeft + bar.offsetWidth < 0.45 * width ? 14 : bar.offsetTop + bar.offsetHeight + 4;
-  return { left, top: top + heads, bottom };
+  return { left, top: top + heads, bottom, sides: named ? nameColumn(width - left) : 0 };
 }

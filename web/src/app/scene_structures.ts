@@ -6,6 +6,7 @@ import type { VertexRef } from "../geometry/vertices";
 import { structureCard } from "../panels/view/structure_card";
 import { structureSearch } from "../panels/view/structure_search";
 import { Signal } from "../state/signal";
+import type { Name } from "../viewer/names";
 import type { Viewer } from "../viewer/viewer";
 
 /** The names of structures: beside the resting pointer, in a card after a click, and in a search field. */
@@ -22,8 +23,9 @@ export class SceneStructures {
   constructor(
     private readonly viewer: Viewer,
     private readonly layerStyles: LayerStyles,
+    measure?: (structure: Structure) => void,
   ) {
-    const actions = { isolate: (each: Structure) => this.isolate(each), showAll: () => this.showAll() };
+    const actions = { isolate: (each: Structure) => this.isolate(each), showAll: () => this.showAll(), measure };
     this.card = structureCard(this.chosen, this.isolated, actions);
     this.search = structureSearch({
       search: (text) => this.structures.search(text),
@@ -48,6 +50,21 @@ export class SceneStructures {
   /** Shows the name of the structure at a vertex; closes the card if it has none. */
   choose(vertex: VertexRef | undefined): void {
     this.chosen.set(vertex && this.structures.at(vertex));
+  }
+
+  /** Returns the name of the structure at a vertex, or of its layer in scenes without structures. */
+  nameAt(vertex: VertexRef): Name | undefined {
+    if (this.structures.all.length > 0) {
+      const structure = this.structures.at(vertex);
+      return structure && { name: structure.name, latin: structure.latin, structure: true };
+    }
+    const layer = this.bodies.find(({ name }) => name === vertex.body)?.layerTitle;
+    return layer === undefined ? undefined : { name: layer, latin: "", structure: false };
+  }
+
+  /** Returns the structure at a vertex; undefined if it has no name. */
+  at(vertex: VertexRef): Structure | undefined {
+    return this.structures.at(vertex);
   }
 
   /** Shows all structures again, from where they were seen before. */

@@ -9,6 +9,8 @@ import { make } from "../dom/elements";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import type { Body, FrameArrays } from "../geometry/bodies";
 import type { CameraPose } from "../geometry/camera_pose";
+import type { VertexRef } from "../geometry/vertices";
+import type { TrackedSeries } from "../panels/readings/graphs";
 import { appearancePanel } from "../panels/view/appearance_panel";
 import { coloringCard } from "../panels/view/coloring_card";
 import { OrientationCube } from "../panels/view/orientation_cube";
@@ -17,13 +19,16 @@ import { rememberedQuality } from "../panels/view/quality_row";
 import type { Comparisons } from "../session/comparisons";
 import type { ForceQueries, ForceRequest } from "../session/force_queries";
 import { Signal } from "../state/signal";
-import { Annotations } from "../viewer/annotations";
+import type { Annotations } from "../viewer/annotations";
 import type { ViewOrientation } from "../viewer/camera_rig";
 import type { Cut } from "../viewer/clipping";
 import { viewNames } from "../viewer/named_views";
+import { paintTexts } from "../viewer/overlay_painter";
 import type { OverlayKind } from "../viewer/overlays";
 import type { Viewer } from "../viewer/viewer";
 import { type Viewpoint, viewpoints } from "../viewer/viewpoints";
+import { Measuring } from "./measuring";
+import { namedAnnotations } from "./named_scene";
 import { SceneStructures } from "./scene_structures";
 
 /** The viewer's local tools: colours, ghost, labels, orientation cube, clipping, and picked and tracked vertices. */
@@ -34,6 +39,7 @@ export class SceneTools {
   readonly cards: HTMLElement[];
   readonly cube: OrientationCube;
   readonly annotations: Annotations;
+  readonly nameLabels: HTMLElement;
   readonly forceLabel = make("output", { id: "force", hidden: true });
   readonly coloring: Coloring;
   /** Settings that a second view shares. */
@@ -43,6 +49,7 @@ export class SceneTools {
   readonly ghost = new Signal<GhostKind>("none");
   readonly quality = rememberedQuality();
   readonly structures: SceneStructures;
+  readonly measuring: Measuring;
   /** The named views of the scene. */
   readonly viewpoints = new Signal<Viewpoint[]>([]);
   /** The cut of the named view that is shown. */
@@ -66,9 +73,16 @@ export class SceneTools {
     this.coloring = new Coloring(forces);
     this.ghosts = new GhostSelector(viewer, arrays, this.ghost);
     this.pickCard = new PickCard(this.trackedVertices, forces.onVertex);
-    this.annotations = new Annotations(viewer);
     this.cube = new OrientationCube((view) => this.visit(view));
-    this.structures = new SceneStructures(viewer, layerStyles);
+    this.structures = new SceneStructures(viewer, layerStyles, (each) =>
+      this.measuring.measurements.measureSurface(each),
+    );
+    const { annotations, nameLabels } = namedAnnotations(viewer, { ...this, layerStyles });
+    [this.annotations, this.nameLabels] = [annotations, nameLabels];
+    const pickAt = viewer.enablePicking((ref) => this.pick(ref));
+    this.measuring = new Measuring(viewer.canvas, this.annotations, () => this.bodies, this.structures, pickAt);
+    for (const changes of [this.measuring.measurements.all, this.measuring.measurements.picked])
+      changes.subscribe(() => this.updateMarkers());
     this.cards = [coloringCard(this.coloring), this.structures.card, this.pickCard.element];
     const { labels, ghost, quality } = this;
     this.panel = appearancePanel({
@@ -84,10 +98,7 @@ export class SceneTools {
     });
     this.cut.subscribe((cut) => {
       viewer.setCut(cut);
-      this.annotations.setLayers(layerStyles.all.value);
     });
-    labels.subscribe((on) => this.annotations.setLabels(on));
-    layerStyles.all.subscribe((all) => this.annotations.setLayers(all));
     this.overlays.subscribe((shown) => viewer.showOverlays(shown));
     quality.subscribe((chosen) => viewer.setQuality(chosen));
     this.coloring.field.subscribe(() => {
@@ -103,10 +114,6 @@ export class SceneTools {
     comparisons.surfaceVisible.subscribe(() => this.updateComparedSurface());
     forces.magnitudes.subscribe(() => this.updateColors());
     this.structures.isolated.subscribe((structure) => structure && this.trackedVertices.picked.set(undefined));
-    viewer.enablePicking((ref) => {
-      this.trackedVertices.picked.set(ref);
-      this.structures.choose(ref);
-    });
     this.trackedVertices.picked.subscribe(() => {
       this.replayForces();
       this.updateMarkers();
@@ -123,6 +130,7 @@ export class SceneTools {
     this.coloring.start(this.tissue);
     void this.forces.start(this.tissue[0]?.name);
     this.trackedVertices.clear();
+    this.measuring.measurements.clear();
     if (this.ghost.value === "now") this.ghost.set("none");
     this.ghosts.start(this.tissue);
     // A diagram shows which of its edges are rigid.
@@ -134,6 +142,19 @@ export class SceneTools {
   showBeside(arrays: FrameArrays | undefined): void {
     this.ghosts.showBeside(arrays);
   }
+
+  /** Measures at a picked vertex, or shows it and its structure. */
+  private pick(ref: VertexRef | undefined): void {
+    if (this.measuring.take(ref)) return;
+    this.trackedVertices.picked.set(ref);
+    this.structures.choose(ref);
+  }
+
+  /** The series of vertices and measurements that this viewer plots. */
+  readonly ownSeries = (): TrackedSeries[] => {
+    const { spec, history } = this.trackedVertices;
+    return [...(spec === undefined ? [] : [{ spec, history }]), ...this.measuring.measurements.graphs];
+  };
 
   /** Shows a view by its name; unknown names change nothing. Its cut replaces that of the view before. */
   visit(name: string): void {
@@ -165,6 +186,7 @@ export class SceneTools {
     this.time = time;
     this.updateFields();
     this.trackedVertices.receive(time, arrays);
+    if (this.replayTime === undefined) this.measuring.measurements.receive(time, arrays);
     if (this.coloring.field.value !== undefined) this.updateColors();
     this.updateMarkers();
   }
@@ -178,7 +200,15 @@ export class SceneTools {
   /** Updates what depends on the camera. */
   afterDraw(orientation: ViewOrientation): void {
     this.cube.show(orientation);
+    const arrays = this.arrays();
+    if (arrays !== undefined) this.measuring.draw(arrays);
     this.annotations.draw();
+  }
+
+  /** Draws measurements, axes and names over a picture of the canvas. */
+  paint(pen: CanvasRenderingContext2D, ratio: number): void {
+    this.annotations.paint(pen, ratio);
+    paintTexts(this.nameLabels, pen, ratio);
   }
 
   /** Queries the forces that are shown. `seen` identifies the state that the viewer received last. */
@@ -212,6 +242,7 @@ export class SceneTools {
   updateReadings(): void {
     const arrays = this.arrays();
     this.pickCard.show(arrays);
+    this.measuring.panel.show(arrays);
     if (arrays !== undefined && this.liveDistance?.update(this.bodies, arrays, () => performance.now()))
       this.updateColors();
   }
@@ -240,6 +271,7 @@ export class SceneTools {
 
   private updateMarkers(): void {
     const arrays = this.arrays();
-    if (arrays !== undefined) this.viewer.setMarkers(this.trackedVertices.markers(arrays));
+    if (arrays === undefined) return;
+    this.viewer.setMarkers([...this.trackedVertices.markers(arrays), ...this.measuring.markers(arrays)]);
   }
 }

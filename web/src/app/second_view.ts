@@ -15,8 +15,9 @@ import { ForceQueries, type ForceRequest } from "../session/force_queries";
 import { SessionController } from "../session/session_controller";
 import type { Signal } from "../state/signal";
 import type { Clock } from "../timing/clock";
-import { Annotations } from "../viewer/annotations";
+import type { Annotations } from "../viewer/annotations";
 import { Viewer, type ViewerHost } from "../viewer/viewer";
+import { namedAnnotations } from "./named_scene";
 import type { SceneTools } from "./scene_tools";
 
 /** Two playing sessions that differ by more than this [s] for this many checks are synchronised again. */
@@ -70,8 +71,10 @@ export class SecondView {
     primary.frames.synchroniseWith(this.frames);
     this.headers = new ViewHeaders([primary.controller, this.controller], primary.presets, actions);
     this.viewer = new Viewer(canvas, this.viewerHost());
-    this.annotations = new Annotations(this.viewer);
-    this.element = make("div", { id: "second-view" }, canvas, this.annotations.element);
+    const { tools, layerStyles } = primary;
+    const { annotations, nameLabels } = namedAnnotations(this.viewer, { ...tools, layerStyles });
+    this.annotations = annotations;
+    this.element = make("div", { id: "second-view" }, canvas, annotations.element, nameLabels);
     this.forces = new ForceQueries(api, sessionId);
     this.colorizer = new VertexColorizer(this.forces);
     this.ghosts = new GhostSelector(this.viewer, () => this.frames.displayed?.arrays, primary.tools.ghost);
@@ -141,11 +144,9 @@ export class SecondView {
     const { coloring } = tools;
     layerStyles.all.subscribe(() => this.applyLayerStyles());
     tools.overlays.subscribe((shown) => this.viewer.showOverlays(shown));
-    tools.labels.subscribe((on) => this.annotations.setLabels(on));
     tools.quality.subscribe((chosen) => this.viewer.setQuality(chosen));
     tools.cut.subscribe((cut) => {
       this.viewer.setCut(cut);
-      this.annotations.setLayers(layerStyles.all.value);
     });
     coloring.field.subscribe((kind) => {
       this.connection.setExact(needsExactPositions(kind));
@@ -203,7 +204,6 @@ export class SecondView {
   private applyLayerStyles(): void {
     const styles = this.primary.layerStyles.all.value;
     for (const { layer, opacity, visible } of styles) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
-    this.annotations.setLayers(styles);
     this.connection.setBodies(this.primary.layerStyles.neededBodies(this.bodies));
   }
 

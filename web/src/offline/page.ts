@@ -68,7 +68,7 @@ export class MotionPage {
         this.margins.show(orientation);
         this.cube.show(orientation);
       },
-      insets: stageInsets,
+      insets: () => stageInsets(false),
       reducedMotion: () => reduced.matches,
       simplifier: () => Promise.resolve(simplifier),
     };

@@ -1,74 +1,70 @@
 import { scaleLinear } from "d3-scale";
 import * as THREE from "three";
-import type { BodyView } from "./body_view";
 import { planeAxes } from "./named_views";
+import type { Names } from "./names";
+import { paintSvg } from "./overlay_painter";
 import type { Viewer } from "./viewer";
 
-/** Distance of a label from its anchor, and between labels [CSS pixels]. */
-const labelOffset = 36;
-const labelSpacing = 20;
 /** Mean character width [CSS pixels]. */
 const letterWidth = 7.5;
 
-/** The properties of a layer that annotations use. */
-export interface LabelledLayer {
-  layer: string;
-  title: string;
-  visible: boolean;
+/** Measured points and what is measured at them. */
+export interface MeasuredPoints {
+  /** Positions [m]: one for a surface, two for a distance, three for an angle, whose corner is the second. */
+  places: [number, number, number][];
+  color: string;
+  label: string;
 }
 
-/** An SVG over the canvas with the names of the layers and, for planar scenes, axes. */
+/** An SVG over the canvas with the leader lines of names, measurements and, for planar scenes, axes. */
 export class Annotations {
   readonly element = svg("svg", { class: "annotations" });
   private readonly names = svg("g", { class: "names" });
   private readonly axes = svg("g", { class: "axes" });
-  private anchors: { view: BodyView; vertex: number; layer: LabelledLayer }[] = [];
-  private labels = false;
+  private readonly measures = svg("g", { class: "measures" });
+  private measured: MeasuredPoints[] = [];
 
-  constructor(private readonly viewer: Viewer) {
+  constructor(
+    private readonly viewer: Viewer,
+    private readonly named: Names,
+  ) {
     this.element.setAttribute("aria-hidden", "true");
-    this.element.append(this.axes, this.names);
+    this.element.append(this.axes, this.measures, this.names);
   }
 
-  /** Sets the layers, for another scene or another visibility. */
-  setLayers(layers: LabelledLayer[]): void {
-    this.anchors = layers.flatMap((layer) => (layer.visible ? (labelAnchor(this.viewer, layer) ?? []) : []));
-    this.draw();
+  /** Sets the measurements that the next drawing shows. */
+  setMeasured(measured: MeasuredPoints[]): void {
+    this.measured = measured;
   }
 
-  /** Shows or hides the names of the layers. */
-  setLabels(on: boolean): void {
-    this.labels = on;
-    this.draw();
+  /** Draws the annotations over a picture of the canvas. */
+  paint(pen: CanvasRenderingContext2D, ratio: number): void {
+    paintSvg(this.element, pen, ratio);
   }
 
   /** Updates the annotations to the current camera. */
   draw(): void {
-    this.names.replaceChildren(...(this.labels ? this.drawNames() : []));
+    this.measures.replaceChildren(...this.measured.flatMap((each) => this.drawMeasured(each)));
+    this.names.replaceChildren(...this.drawLeaders());
     this.axes.replaceChildren(...this.drawAxes());
   }
 
-  private drawNames(): SVGElement[] {
-    const places = this.anchors.map(({ view, vertex, layer }) => {
-      const place = new THREE.Vector3().fromBufferAttribute(view.positions, vertex);
-      place.applyMatrix4(view.group.matrixWorld);
-      const [x, y] = this.viewer.rig.project(place);
-      return { x, y, layer, clipped: this.viewer.isClipped(place) };
+  private drawMeasured({ places, color, label }: MeasuredPoints): SVGElement[] {
+    const ends = places.map((place) => this.viewer.rig.project(new THREE.Vector3(...place)));
+    if (ends.length === 0) return [];
+    const line = svg("polyline", { points: ends.map((end) => end.join(",")).join(" ") });
+    line.style.stroke = color;
+    // The label lies at the corner of an angle, and beside the middle of a distance.
+    const at = ends.length === 2 ? [0, 1].map((k) => (ends[0][k] + ends[1][k]) / 2) : ends[ends.length >> 1];
+    const side = at[0] + 9 + letterWidth * label.length > this.element.clientWidth ? -1 : 1;
+    return [line, svgText(at[0] + 9 * side, at[1] - 9, label, side > 0 ? "start" : "end", color)];
+  }
+
+  private drawLeaders(): SVGElement[] {
+    return this.named.leaders().flatMap(({ from, x, y }) => {
+      const [cx, cy] = this.viewer.rig.project(from);
+      return [svg("polyline", { points: `${cx},${cy} ${x},${y}` }), svg("circle", { cx, cy, r: 2.5 })];
     });
-    const width = this.element.clientWidth;
-    let last = -Infinity;
-    return places
-      .filter(({ clipped: gone }) => !gone)
-      .sort((a, b) => a.y - b.y)
-      .flatMap(({ x, y, layer }) => {
-        last = Math.max(y, last + labelSpacing);
-        // A label that would leave the canvas is placed on the other side.
-        const side = x + labelOffset + letterWidth * layer.title.length > width ? -1 : 1;
-        const [toX, toY] = [x + side * labelOffset, last];
-        const line = svg("polyline", { points: `${x},${y} ${toX - 4 * side},${toY}` });
-        const dot = svg("circle", { cx: x, cy: y, r: 2.5 });
-        return [line, dot, svgText(toX, toY + 4, layer.title, side > 0 ? "start" : "end")];
-      });
   }
 
   /** Axes are drawn only if the camera looks perpendicularly at the plane, so that lengths are true. */
@@ -117,26 +113,6 @@ function ruler(
   return parts;
 }
 
-/** Returns the vertex of a layer that is farthest to the patient's left at rest and not clipped. */
-function labelAnchor(
-  viewer: Viewer,
-  layer: LabelledLayer,
-): { view: BodyView; vertex: number; layer: LabelledLayer } | undefined {
-  let found: { view: BodyView; vertex: number; layer: LabelledLayer } | undefined;
-  let farthest = -Infinity;
-  const place = new THREE.Vector3();
-  for (const view of viewer.bodies) {
-    if (view.body.layer !== layer.layer) continue;
-    const { rest } = view.body;
-    for (let i = 0; i < rest.length; i += 3) {
-      if (rest[i] <= farthest || viewer.isClipped(place.fromArray(rest, i))) continue;
-      farthest = rest[i];
-      found = { view, vertex: i / 3, layer };
-    }
-  }
-  return found;
-}
-
 function svg<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number>) {
   const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
@@ -147,8 +123,9 @@ function line([x1, y1]: [number, number], [x2, y2]: [number, number]): SVGElemen
   return svg("line", { x1, y1, x2, y2 });
 }
 
-function svgText(x: number, y: number, text: string, anchor: string): SVGElement {
+function svgText(x: number, y: number, text: string, anchor: string, color?: string): SVGElement {
   const element = svg("text", { x, y, "text-anchor": anchor });
+  if (color !== undefined) element.style.fill = color;
   element.textContent = text;
   return element;
 }

@@ -31,6 +31,8 @@ export interface Insets {
   left: number;
   top: number;
   bottom: number;
+  /** Room left and right of the scene, beside what panels cover. Not set: none. */
+  sides?: number;
 }
 
 /** Duration of a flight to another view [ms]. */
@@ -135,10 +137,13 @@ export class CameraRig {
   }
 
   /** Centres the scene in the part of the canvas that panels do not cover. */
-  resize({ left, top, bottom }: Insets): void {
+  resize({ left, top, bottom, sides = 0 }: Insets): void {
     const width = Math.max(this.canvas.clientWidth, 1);
     const height = Math.max(this.canvas.clientHeight, 1);
-    this.freeArea = { width: Math.max(0.3, 1 - left / width), height: Math.max(0.3, 1 - (top + bottom) / height) };
+    this.freeArea = {
+      width: Math.max(0.3, 1 - (left + 2 * sides) / width),
+      height: Math.max(0.3, 1 - (top + bottom) / height),
+    };
     this.camera.aspect = width / height;
     this.camera.setViewOffset(width, height, -left / 2, (bottom - top) / 2, width, height);
     this.camera.updateProjectionMatrix();

@@ -7,14 +7,23 @@ import { pickVertex, pointerOf } from "./picking";
 const maxMovement = 5;
 const maxDuration = 500;
 
-/** Calls `picked` with the vertex under each click; undefined if there is none. */
+/**
+ * Calls `picked` with the vertex under each click; undefined if there is none. Returns a function that picks at a place on
+ * the canvas [CSS pixels] as a click does, for the keyboard.
+ */
 export function enablePicking(
   canvas: HTMLCanvasElement,
   camera: THREE.Camera,
   views: () => BodyView[],
   cut: () => THREE.Plane | undefined,
   picked: (vertex: VertexRef | undefined) => void,
-): void {
+): (x: number, y: number) => void {
+  const pickAt = (offsetX: number, offsetY: number) => {
+    const visible = views().filter(({ group, isFaded }) => group.visible && !isFaded);
+    const bodies = visible.map((view) => ({ positions: view.worldPositions(), triangles: view.body.triangles }));
+    const found = pickVertex(pointerOf({ offsetX, offsetY }, canvas), camera, bodies, cut());
+    picked(found && { body: visible[found.body].body.name, vertex: found.vertex });
+  };
   let down: PointerEvent | undefined;
   canvas.addEventListener("pointerdown", (event) => {
     down = event.button === 0 && !event.shiftKey ? event : undefined;
@@ -22,9 +31,7 @@ export function enablePicking(
   canvas.addEventListener("pointerup", (event) => {
     if (down === undefined || event.timeStamp - down.timeStamp > maxDuration) return;
     if (Math.hypot(event.offsetX - down.offsetX, event.offsetY - down.offsetY) > maxMovement) return;
-    const visible = views().filter(({ group, isFaded }) => group.visible && !isFaded);
-    const bodies = visible.map((view) => ({ positions: view.worldPositions(), triangles: view.body.triangles }));
-    const found = pickVertex(pointerOf(event, canvas), camera, bodies, cut());
-    picked(found && { body: visible[found.body].body.name, vertex: found.vertex });
+    pickAt(event.offsetX, event.offsetY);
   });
+  return pickAt;
 }

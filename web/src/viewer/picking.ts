@@ -88,7 +88,10 @@ export function dragPoint(pointer: THREE.Vector2, camera: THREE.Camera, place: T
 }
 
 /** Returns the pointer position of an event: -1 to 1 from left to right and from bottom to top. */
-export function pointerOf({ offsetX, offsetY }: PointerEvent, canvas: HTMLElement): THREE.Vector2 {
+export function pointerOf(
+  { offsetX, offsetY }: Pick<PointerEvent, "offsetX" | "offsetY">,
+  canvas: HTMLElement,
+): THREE.Vector2 {
   const { clientWidth, clientHeight } = canvas;
   return new THREE.Vector2((2 * offsetX) / clientWidth - 1, 1 - (2 * offsetY) / clientHeight);
 }

@@ -76,7 +76,7 @@ export class Viewer {
   private shown: FrameArrays | undefined;
 
   constructor(
-    private readonly canvas: HTMLCanvasElement,
+    readonly canvas: HTMLCanvasElement,
     private readonly host: ViewerHost,
   ) {
     this.renderer = new THREE.WebGLRenderer({
@@ -181,6 +181,18 @@ export class Viewer {
     return this.box;
   }
 
+  /** Width and height of the canvas [CSS pixels]. */
+  get size(): [width: number, height: number] {
+    return [this.canvas.clientWidth, this.canvas.clientHeight];
+  }
+
+  /** The part of the canvas that panels do not cover [CSS pixels]. */
+  get freePart(): { left: number; right: number; top: number; bottom: number } {
+    const [width, height] = this.size;
+    const { left, top, bottom } = this.host.insets();
+    return { left, right: width, top, bottom: height - bottom };
+  }
+
   /** True if the current cut clips this position. */
   isClipped(place: THREE.Vector3): boolean {
     return this.renderer.clippingPlanes.some((plane) => plane.distanceToPoint(place) < 0);
@@ -256,9 +268,9 @@ export class Viewer {
     new Pulling(this.canvas, this.rig.camera, this.scene, views, pull, changed, plane, told);
   }
 
-  /** Enables picking of vertices by clicks. */
-  enablePicking(picked: (vertex: VertexRef | undefined) => void): void {
-    enablePicking(
+  /** Enables picking of vertices by clicks. Returns a function that picks at a place on the canvas [CSS pixels]. */
+  enablePicking(picked: (vertex: VertexRef | undefined) => void): (x: number, y: number) => void {
+    return enablePicking(
       this.canvas,
       this.rig.camera,
       () => this.views,
@@ -297,8 +309,8 @@ export class Viewer {
     this.rig.goTo(view);
   }
 
-  /** Returns the current view as PNG, without annotations. */
-  capture(): Promise<Blob | null> {
+  /** Returns the current view as PNG. `annotate` draws over it, in pixels of which `ratio` make a CSS pixel. */
+  capture(annotate: (pen: CanvasRenderingContext2D, ratio: number) => void): Promise<Blob | null> {
     this.renderer.render(this.scene, this.rig.camera);
     const { width, height } = this.canvas;
     const copy = Object.assign(document.createElement("canvas"), { width, height });
@@ -308,6 +320,7 @@ export class Viewer {
     pen.fillRect(0, 0, width, height);
     // The drawing buffer is valid only until the browser composes the page.
     pen.drawImage(this.canvas, 0, 0);
+    annotate(pen, width / this.canvas.clientWidth);
     return new Promise((done) => copy.toBlob(done, "image/png"));
   }
 

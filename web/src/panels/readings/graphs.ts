@@ -11,9 +11,9 @@ import { MModePictures } from "./m_mode_pictures";
 const kept = 120;
 const lengths = [6, 12, 30, 60, 120];
 
-/** The series of the vertices that this viewer tracks. */
+/** A graph of what this viewer tracks or measures, with its values. */
 export interface TrackedSeries {
-  spec: GraphSpec | undefined;
+  spec: GraphSpec;
   history: TimeSeries;
 }
 
@@ -34,7 +34,7 @@ export class GraphsPanel {
 
   constructor(
     private readonly fileName: () => string,
-    private readonly tracked: TrackedSeries,
+    private readonly tracked: () => TrackedSeries[],
   ) {
     this.length.append(...lengths.map((each) => make("option", { value: String(each) }, `${each} s`)));
     this.length.value = "12";
@@ -49,12 +49,11 @@ export class GraphsPanel {
   /** Records every frame, also those between two drawings. */
   receive(frame: Frame): void {
     this.history.add(frame.time, valuesOf(frame));
-    const { spec } = this.tracked;
-    const specs = [...graphsOf(frame), ...(spec === undefined ? [] : [spec])];
-    const offered = JSON.stringify(specs);
+    const [specs, tracked] = [graphsOf(frame), this.tracked()];
+    const offered = JSON.stringify([...specs, ...tracked.map(({ spec }) => spec)]);
     if (offered === this.specsKey) return;
     this.specsKey = offered;
-    this.rebuild(specs);
+    this.rebuild([...specs.map((spec) => ({ spec, history: this.history })), ...tracked]);
   }
 
   /** Removes all data, for another scene. */
@@ -72,16 +71,13 @@ export class GraphsPanel {
     this.show(this.newest());
   }
 
-  private rebuild(specs: GraphSpec[]): void {
+  private rebuild(series: TrackedSeries[]): void {
     const events = {
       zoom: (span: TimeSpan) => this.hold(span),
       resume: () => this.resume(),
       cursor: (place: number | undefined) => this.tiles.forEach((tile) => tile.showValues(place)),
     };
-    this.tiles = specs.map((spec) => {
-      const history = spec === this.tracked.spec ? this.tracked.history : this.history;
-      return new GraphTile(spec, history, this.fileName, events);
-    });
+    this.tiles = series.map(({ spec, history }) => new GraphTile(spec, history, this.fileName, events));
     this.list.replaceChildren(...this.tiles.map(({ element }) => element));
     this.list.querySelector('[data-graph="domes"]')?.after(this.mMode.element);
     this.drawn = -1;

@@ -45,7 +45,8 @@ const ghosts: [GhostKind, string][] = [
 export function appearancePanel(view: AppearanceSettings): HTMLElement {
   const ghost = choice("ghost", "Ghost", "Deformable bodies in another state", ghosts, (kind) => view.ghost.set(kind));
   view.ghost.subscribe((kind) => (ghost.querySelector("select")!.value = kind));
-  const labels = switchRow("Show names", "Names of the layers.", (on) => view.labels.set(on));
+  const labels = switchRow("Show names", "Names of the visible structures (N).", (on) => view.labels.set(on));
+  view.labels.subscribe((on) => (labels.input.checked = on));
   labels.input.id = "show-labels";
   const rows = overlayRows.map(([kind, label, help]) => overlayRow(kind, label, help, view.overlays));
   const cut = cutRows(view.cut, view.cutAt);

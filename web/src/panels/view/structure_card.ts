@@ -8,25 +8,34 @@ export interface StructureActions {
   isolate(structure: Structure): void;
   /** Shows all structures again. */
   showAll(): void;
+  /** Measures the structure; the card has no button for it if not set. */
+  measure?: ((structure: Structure) => void) | undefined;
 }
 
 /** A card with the name of the chosen structure and its definition. */
 export function structureCard(
   chosen: Signal<Structure | undefined>,
   isolated: Signal<Structure | undefined>,
-  { isolate, showAll }: StructureActions,
+  { isolate, showAll, measure }: StructureActions,
 ): HTMLElement {
   const name = make("h2");
   const latin = make("p", { className: "latin", lang: "la" });
   const definition = make("p");
   const alone = make("button", { type: "button", id: "structure-alone" });
   const close = make("button", { type: "button", onclick: () => chosen.set(undefined) }, "Close");
+  const size = make(
+    "button",
+    { type: "button", id: "structure-measure", title: "Area, and volume if closed" },
+    "Measure",
+  );
+  size.onclick = () => chosen.value && measure?.(chosen.value);
+  const buttons = measure === undefined ? [alone, close] : [alone, size, close];
   const card = make("section", { id: "structure", className: "card", ariaLabel: "Structure" });
   alone.onclick = () => {
     if (isolated.value !== undefined) showAll();
     else if (chosen.value !== undefined) isolate(chosen.value);
   };
-  card.append(name, latin, definition, make("div", { className: "row" }, alone, close));
+  card.append(name, latin, definition, make("div", { className: "row" }, ...buttons));
   chosen.subscribe((structure) => {
     card.hidden = structure === undefined;
     name.textContent = structure?.name ?? "";

@@ -1,0 +1,170 @@
+import { type Body, type FrameArrays, positionsOf, vertexAt } from "../geometry/bodies";
+import { angleAt, distanceBetween, enclosedVolume, isClosed, surfaceArea } from "../geometry/measuring";
+import type { VertexRef } from "../geometry/vertices";
+import { Placement } from "../gen/phrenic/v1/frames_pb";
+import type { GraphSpec } from "../graphs/catalogue";
+import { Signal } from "../state/signal";
+import { TimeSeries } from "../state/time_series";
+
+/** A tool: the distance of two points, the angle at the second of three, or the surface of the structure at one. */
+export type MeasureTool = "distance" | "angle" | "surface";
+
+/** The points that a tool needs. */
+export const pointsOf: Record<MeasureTool, number> = { distance: 2, angle: 3, surface: 1 };
+
+/** What a measurement gives. */
+export type Quantity = "distance" | "angle" | "area" | "volume";
+
+const most = 12;
+const units: Record<Quantity, [unit: string, factor: number]> = {
+  distance: ["mm", 1e3],
+  angle: ["°", 180 / Math.PI],
+  area: ["cm²", 1e4],
+  volume: ["ml", 1e6],
+};
+
+/** A part of a body: some of its vertices, or all if undefined. */
+export interface BodyPart {
+  name: string;
+  body: string;
+  vertices: number[] | undefined;
+}
+
+/** A measurement of vertices, which follows their motion. */
+export interface Measurement {
+  /** Identifies the measurement, and orders its colour. */
+  id: number;
+  tool: MeasureTool;
+  name: string;
+  /** The picked vertices; for a surface the one that carries the label. */
+  points: VertexRef[];
+  /** For a surface: indices of the triangles' vertices, and whether they enclose a volume. */
+  surface: { triangles: ArrayLike<number>; closed: boolean } | undefined;
+}
+
+/** The measurements of a scene, their history, and the points that are picked for the next one. */
+export class Measurements {
+  readonly all = new Signal<Measurement[]>([]);
+  /** The active tool; undefined if clicks do not measure. */
+  readonly tool = new Signal<MeasureTool | undefined>(undefined);
+  /** The points of the next measurement that are picked already. */
+  readonly picked = new Signal<VertexRef[]>([]);
+  private readonly histories = new Map<Quantity, TimeSeries>();
+  private next = 0;
+
+  /** `partAt` returns the structure at a vertex. */
+  constructor(
+    private readonly bodies: () => Body[],
+    private readonly partAt: (ref: VertexRef) => BodyPart,
+  ) {}
+
+  /** Chooses a tool, or none; drops the points that are picked. */
+  use(tool: MeasureTool | undefined): void {
+    this.picked.set([]);
+    this.tool.set(tool);
+  }
+
+  /** Adds a point for the active tool. The last one that it needs adds the measurement, and the tool stays active. */
+  pick(ref: VertexRef): void {
+    const tool = this.tool.value;
+    if (tool === undefined) return;
+    if (tool === "surface") return this.measureSurface(this.partAt(ref), ref.vertex);
+    const points = [...this.picked.value, ref];
+    this.picked.set(points.length < pointsOf[tool] ? points : []);
+    if (points.length < pointsOf[tool]) return;
+    const name = [...new Set(points.map((each) => this.partAt(each).name))].join(" – ");
+    this.add({ tool, name, points, surface: undefined });
+  }
+
+  /** Measures the surface of a structure, labelled at `vertex` or its first one. */
+  measureSurface({ name, body, vertices }: BodyPart, vertex = vertices?.[0] ?? 0): void {
+    const known = this.bodies().find((each) => each.name === body);
+    if (known === undefined || known.triangles.length === 0) return;
+    const whole = vertices === undefined;
+    const triangles = whole ? known.triangles : trianglesWithin(known.triangles, vertices);
+    const surface = { triangles, closed: whole && isClosed(known.rest, triangles) };
+    this.add({ tool: "surface", name, points: [{ body, vertex }], surface });
+  }
+
+  /** Removes a measurement. */
+  remove(id: number): void {
+    this.all.set(this.all.value.filter((each) => each.id !== id));
+  }
+
+  /** Removes all measurements and ends measuring. */
+  clear(): void {
+    this.use(undefined);
+    this.all.set([]);
+  }
+
+  /** Returns what a measurement gives in a frame, in SI units [m, rad, m^2, m^3]. */
+  values({ tool, points, surface }: Measurement, arrays: FrameArrays): [Quantity, number][] {
+    const places = this.places(points, arrays);
+    if (places.length < points.length) return [];
+    if (tool === "distance") return [["distance", distanceBetween(places[0], places[1])]];
+    if (tool === "angle") return [["angle", angleAt(places[1], places[0], places[2])]];
+    const body = this.bodies().find(({ name }) => name === points[0].body);
+    if (body === undefined || surface === undefined) return [];
+    // A rigid motion changes neither area nor volume.
+    const x = body.placement === Placement.STREAMED ? positionsOf(body, arrays) : body.rest;
+    const area: [Quantity, number] = ["area", surfaceArea(x, surface.triangles)];
+    return surface.closed ? [area, ["volume", Math.abs(enclosedVolume(x, surface.triangles))]] : [area];
+  }
+
+  /** Returns the positions of vertices in a frame [m]; vertices of unknown bodies are left out. */
+  places(points: VertexRef[], arrays: FrameArrays): [number, number, number][] {
+    return points.flatMap(({ body, vertex }) => {
+      const known = this.bodies().find(({ name }) => name === body);
+      return known === undefined ? [] : [vertexAt(known, arrays, vertex)];
+    });
+  }
+
+  /** Records the values at `time` [s]. */
+  receive(time: number, arrays: FrameArrays): void {
+    const values = new Map<Quantity, [id: string, value: number][]>();
+    for (const each of this.all.value) {
+      for (const [what, value] of this.values(each, arrays))
+        values.set(what, [...(values.get(what) ?? []), [String(each.id), value]]);
+    }
+    for (const [what, all] of values) {
+      const history = this.histories.get(what) ?? new TimeSeries(120);
+      this.histories.set(what, history);
+      history.add(time, all);
+    }
+  }
+
+  /** A graph for each quantity that is measured, with its history. */
+  get graphs(): { spec: GraphSpec; history: TimeSeries }[] {
+    return [...this.histories].flatMap(([what, history]) => {
+      const measured = this.all.value.filter(({ id }) => history.series.has(String(id)));
+      const [unit, factor] = units[what];
+      const curves = measured.map(({ id, name }) => ({ key: String(id), name, factor, order: id }));
+      const spec = { id: `measured-${what}`, title: `Measured ${what}`, unit, curves };
+      return curves.length === 0 ? [] : [{ spec, history }];
+    });
+  }
+
+  private add(measurement: Omit<Measurement, "id">): void {
+    this.all.set([...this.all.value, { ...measurement, id: this.next++ }].slice(-most));
+  }
+}
+
+/** Formats a value in SI units: "12.3 mm", "45.0°", "812.4 cm²", "1203 ml". */
+export function quantityText(what: Quantity, value: number): string {
+  const [unit, factor] = units[what];
+  const shown = factor * value;
+  if (!Number.isFinite(shown)) return "undefined";
+  if (what === "area" && shown < 1) return `${(100 * shown).toFixed(1)} mm²`;
+  return `${shown.toFixed(shown >= 1000 ? 0 : 1)}${what === "angle" ? "" : " "}${unit}`;
+}
+
+/** Returns the triangles of which all vertices are among these. */
+function trianglesWithin(triangles: Uint32Array, vertices: number[]): number[] {
+  const own = new Set(vertices);
+  const within: number[] = [];
+  for (let t = 0; t < triangles.length; t += 3) {
+    const corners = triangles.subarray(t, t + 3);
+    if (corners.every((vertex) => own.has(vertex))) within.push(...corners);
+  }
+  return within;
+}
