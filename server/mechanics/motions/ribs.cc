@@ -29,6 +29,8 @@ Eigen::Vector3d Head(const Points& vertices) {
   return sum / count;
 }
 
+constexpr int kMostRibs = 12;  // of a side
+
 const v1::RibEndState* EndState(const v1::Ribs& scene, int number) {
   const auto found = std::find_if(scene.end_states().begin(), scene.end_states().end(),
                                   [number](const v1::RibEndState& end) { return end.number() == number; });
@@ -53,13 +55,12 @@ absl::Status CheckSegments(const v1::Ribs& scene, std::string_view path) {
   const v1::CageSegments& segments = scene.free().segments();
   if (!scene.free().has_segments()) return absl::OkStatus();
   const std::string field = absl::StrCat(std::string(path), ".free.segments");
+  if (segments.first_rib() < 1 || segments.last_rib() > kMostRibs) {
+    return FieldError(field, absl::StrCat("ribs have numbers from 1 to ", kMostRibs));
+  }
   if (segments.first_rib() > segments.last_rib()) {
     return FieldError(field, absl::StrCat("no rib has a number from ", segments.first_rib(), " to ",
                                           segments.last_rib(), ": first_rib is the smaller one"));
-  }
-  for (int number = segments.first_rib(); number <= segments.last_rib(); ++number) {
-    if (EndState(scene, number) != nullptr) continue;
-    return FieldError(field, absl::StrCat("there is no end state for rib ", number, ": name ribs of end_states"));
   }
   return absl::OkStatus();
 }
