@@ -160,11 +160,11 @@ export class SceneTools {
     this.ghosts.receive(frame);
   }
 
-  /** Updates colours, tracks and markers before a frame of this time [s] is drawn. */
-  beforeDraw(time: number, arrays: FrameArrays): void {
+  /** Updates colours, markers and, if `tracks`, tracks before a frame of this time [s] is drawn. */
+  beforeDraw(time: number, arrays: FrameArrays, tracks = true): void {
     this.time = time;
     this.updateFields();
-    this.trackedVertices.receive(time, arrays);
+    if (tracks) this.trackedVertices.receive(time, arrays);
     if (this.coloring.field.value !== undefined) this.updateColors();
     this.updateMarkers();
   }

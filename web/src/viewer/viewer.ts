@@ -23,6 +23,8 @@ import { surfaceVertex } from "./surface_picking";
 
 /** Scenes with at most this many vertices are drawn as diagrams. */
 const maxDiagramVertices = 2000;
+/** Background of pictures and films. */
+export const pictureBackground = "#1f262d";
 /** Radius of a marker [CSS pixels]. */
 const markerSize = 5;
 
@@ -52,7 +54,7 @@ export class Viewer {
   readonly rig: CameraRig;
   private readonly scene = new THREE.Scene();
   /** Depth cue: distant parts fade slightly into the background. */
-  private readonly fog = new THREE.Fog("#1f262d");
+  private readonly fog = new THREE.Fog(pictureBackground);
   private readonly renderer: THREE.WebGLRenderer;
   private views: BodyView[] = [];
   private overlays: ReadonlySet<OverlayKind> = new Set();
@@ -74,6 +76,8 @@ export class Viewer {
   /** Time of the first drawing that shows a frame, since navigation start [ms]; -1 before. */
   firstDrawTime = -1;
   private shown: FrameArrays | undefined;
+  /** True while a film is made: only its frames are drawn. */
+  private filming = false;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -304,11 +308,39 @@ export class Viewer {
     const copy = Object.assign(document.createElement("canvas"), { width, height });
     const pen = copy.getContext("2d");
     if (pen === null) return Promise.resolve(null);
-    pen.fillStyle = "#1f262d";
+    pen.fillStyle = pictureBackground;
     pen.fillRect(0, 0, width, height);
     // The drawing buffer is valid only until the browser composes the page.
     pen.drawImage(this.canvas, 0, 0);
     return new Promise((done) => copy.toBlob(done, "image/png"));
+  }
+
+  /** The part of the canvas that panels do not cover [CSS pixels]. */
+  get freeArea(): { x: number; y: number; width: number; height: number } {
+    const { left, top, bottom } = this.host.insets();
+    const { clientWidth, clientHeight } = this.canvas;
+    const [width, height] = [Math.max(1, clientWidth - left), Math.max(1, clientHeight - top - bottom)];
+    return { x: left, y: top, width, height };
+  }
+
+  /** Begins a film with `ratio` device pixels per CSS pixel: until `endFilm`, only `drawForFilm` draws. */
+  beginFilm(ratio: number): void {
+    this.filming = true;
+    this.renderer.setPixelRatio(ratio);
+  }
+
+  /** Draws the host's frame at once. The canvas that it returns has the picture only until the caller waits. */
+  drawForFilm(): HTMLCanvasElement {
+    this.draw();
+    return this.canvas;
+  }
+
+  /** Ends a film and draws what is due again. */
+  endFilm(): void {
+    this.filming = false;
+    this.renderer.setPixelRatio(this.resolution.ratio);
+    this.shown = undefined;
+    this.refresh();
   }
 
   /** Adapts to the current size of the canvas and of the covered parts. */
@@ -325,6 +357,7 @@ export class Viewer {
   }
 
   private onAnimationFrame(now: number): void {
+    if (this.filming) return;
     this.rig.update(now);
     if (this.host.advance()) this.dirty = true;
     if (this.resolution.recordFrame(now, this.dirty)) {
@@ -332,7 +365,10 @@ export class Viewer {
       this.dirty = true;
     }
     if (this.quality.recordFrame(now, this.dirty)) this.applyQuality();
-    if (!this.dirty) return;
+    if (this.dirty) this.draw();
+  }
+
+  private draw(): void {
     this.dirty = false;
     const frame = this.host.frame();
     if (frame !== undefined && frame !== this.shown) {
