@@ -90,3 +90,42 @@ test("AFilmOfABreathPlays", async () => {
   expect(viewer.consoleErrors).toEqual([]);
   await Promise.all([empty.context().close(), viewer.close()]);
 });
+
+/** Returns the number of pages of a PDF file. */
+function pageCount(pdf: Buffer): number {
+  return pdf.toString("latin1").match(/\/Type\s*\/Page\b(?!s)/g)?.length ?? 0;
+}
+
+test("ALessonIsPrintedAsAWorksheet", async () => {
+  const viewer = await ViewerPage.open(browser, `${server.url}?session=thorax&lesson=how-we-breathe&step=1`);
+  const { page } = viewer;
+  await page.evaluate(() => (window.print = () => document.body.setAttribute("data-printed", "")));
+  await page.waitForTimeout(1500);
+  await page.click("#lesson-next");
+  await page.getByRole("heading", { name: "The diaphragm pulls" }).waitFor();
+  await page.waitForTimeout(1500);
+  await page.focus("#lesson-print");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("#worksheet");
+  expect(await page.evaluate(() => document.activeElement?.id)).toBe("worksheet-print");
+  expect(await viewer.violations()).toEqual([]);
+  await viewer.saveScreenshot("worksheet-screen");
+  expect(await page.locator("#worksheet img").count()).toBe(2);
+  await page.press("#worksheet-print", "Enter");
+  await page.waitForSelector("body[data-printed]");
+  const pupil = await page.pdf({ preferCSSPageSize: true, path: join(outFolder, "worksheet.pdf") });
+  await page.getByLabel("Answers for the teacher").check();
+  const teacher = await page.pdf({ preferCSSPageSize: true, path: join(outFolder, "worksheet-answers.pdf") });
+  const pages = pageCount(pupil);
+  console.log(`worksheet: ${pages} pages, with answers ${pageCount(teacher)}`);
+  // Five steps, two with a picture and three without; the answers begin on a page of their own.
+  expect(pages).toBe(2);
+  expect(pageCount(teacher)).toBe(pages + 1);
+  expect(pupil.toString("latin1")).toMatch(/\/MediaBox\s*\[0 0 59[45][.\d]* 84[12]/);
+  await page.keyboard.press("Escape");
+  expect(await page.evaluate(() => document.activeElement?.id)).toBe("lesson-print");
+  expect(await page.locator("#worksheet").count()).toBe(0);
+  expect(await viewer.violations()).toEqual([]);
+  expect(viewer.consoleErrors).toEqual([]);
+  await viewer.close();
+});

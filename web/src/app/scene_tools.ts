@@ -145,6 +145,11 @@ export class SceneTools {
     this.viewer.goTo(view);
   }
 
+  /** Returns the view on white as PNG. */
+  pictureForPaper(): Promise<Blob | null> {
+    return this.viewer.captureForPaper();
+  }
+
   /** The camera's pose [m]. */
   get pose(): CameraPose {
     return this.viewer.rig.pose;

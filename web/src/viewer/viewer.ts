@@ -303,15 +303,28 @@ export class Viewer {
 
   /** Returns the current view as PNG, without annotations. */
   capture(): Promise<Blob | null> {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    return this.picture(pictureBackground, { x: 0, y: 0, width, height });
+  }
+
+  /** Returns the part of the view that panels do not cover on white, as PNG, for paper. */
+  captureForPaper(): Promise<Blob | null> {
+    return this.picture("#fff", this.freeArea);
+  }
+
+  private picture(background: string, area: Viewer["freeArea"]): Promise<Blob | null> {
+    this.fog.color.set(background);
     this.renderer.render(this.scene, this.rig.camera);
-    const { width, height } = this.canvas;
+    this.fog.color.set(pictureBackground);
+    const ratio = this.canvas.width / Math.max(1, this.canvas.clientWidth);
+    const [x, y, width, height] = [area.x, area.y, area.width, area.height].map((each) => Math.round(each * ratio));
     const copy = Object.assign(document.createElement("canvas"), { width, height });
     const pen = copy.getContext("2d");
     if (pen === null) return Promise.resolve(null);
-    pen.fillStyle = pictureBackground;
+    pen.fillStyle = background;
     pen.fillRect(0, 0, width, height);
     // The drawing buffer is valid only until the browser composes the page.
-    pen.drawImage(this.canvas, 0, 0);
+    pen.drawImage(this.canvas, -x, -y);
     return new Promise((done) => copy.toBlob(done, "image/png"));
   }
 
