@@ -1,9 +1,10 @@
 import { statSync } from "node:fs";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
+import { pathToFileURL } from "node:url";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { endAll, startAll, ViewerPage } from "./browser";
+import { endAll, isComplaint, startAll, ViewerPage } from "./browser";
 import { outFolder, type Server } from "./server";
 
 let server: Server;
@@ -89,6 +90,25 @@ test("AFilmOfABreathPlays", async () => {
   expect(await page.textContent("#film-progress")).toBe("");
   expect(viewer.consoleErrors).toEqual([]);
   await Promise.all([empty.context().close(), viewer.close()]);
+});
+
+test("APageThatWasTakenHomeMakesAFilmWithoutANetwork", async () => {
+  const path = join(outFolder, "film-page.html");
+  await server.phrenic("export", "thorax", path);
+  const context = await browser.newContext({ viewport: { width: 900, height: 620 }, offline: true });
+  const page = await context.newPage();
+  const complaints: string[] = [];
+  page.on("console", (message) => isComplaint(message) && complaints.push(message.text()));
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  await page.goto(pathToFileURL(path).href);
+  await page.waitForSelector("#loading", { state: "hidden", timeout: 30_000 });
+  await page.locator("summary", { hasText: "A film of this breath" }).click();
+  const [file] = await Promise.all([page.waitForEvent("download", { timeout: 100_000 }), page.click("#film")]);
+  const film = await watch(await context.newPage(), await readFile((await file.path())!), [0.02, 1.02]);
+  expect(film.duration).toBeGreaterThan(2);
+  expect(film.moved[0]).toBeGreaterThan(0.001);
+  expect(complaints).toEqual([]);
+  await context.close();
 });
 
 /** Returns the number of pages of a PDF file. */

@@ -1,6 +1,7 @@
 import { create, toBinary } from "@bufbuild/protobuf";
 import { beforeEach, describe, expect, test, vi } from "vitest";
 import { FilmMaker, type PictureWriter } from "../../../web/src/film/film_maker";
+import { recordedMotion } from "../../../web/src/film/recorded_motion";
 import type { FilmStage } from "../../../web/src/film/pictures";
 import type { DisplayedFrame } from "../../../web/src/frames/frame_buffer";
 import { Codec, FrameSchema, GetGeometryResponseSchema, Placement } from "../../../web/src/gen/phrenic/v1/frames_pb";
@@ -73,7 +74,7 @@ const writer: PictureWriter = {
 function maker(): { film: FilmMaker; exports: FakeExports } {
   const exports = new FakeExports();
   const film = new FilmMaker(
-    exports as unknown as Exports,
+    recordedMotion(exports as unknown as Exports),
     stage,
     async () => writer,
     () => supported,

@@ -5,7 +5,8 @@ import type { Identity } from "../connection/identity";
 import { type ConnectionListener, type ConnectionState, SessionConnection } from "../connection/session_connection";
 import { download } from "../dom/download";
 import { elementById } from "../dom/elements";
-import { FilmMaker } from "../film/film_maker";
+import { FilmMaker, type OpenWriter } from "../film/film_maker";
+import { recordedMotion } from "../film/recorded_motion";
 import { type DisplayedFrame, FrameBuffer } from "../frames/frame_buffer";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
@@ -66,6 +67,9 @@ import { testHook } from "./test_hook";
 /** Update intervals of texts and numbers, and of graphs [ms]. */
 const statusInterval = 200;
 const graphInterval = 100;
+
+/** The encoder is loaded with the first film. */
+const openWriter: OpenWriter = async (canvas) => (await import("../film/film_writer")).FilmWriter.open(canvas);
 
 /** What the page shows, from its address. */
 export interface PageTarget {
@@ -283,7 +287,7 @@ export class App {
       if (picture !== null) download(`${sessionId}.png`, picture);
     };
     const stage = filmStage(viewer, this.tools.coloring, (frame) => (this.filmed = frame));
-    const film = new FilmMaker(new Exports(this.api, sessionId), stage);
+    const film = new FilmMaker(recordedMotion(new Exports(this.api, sessionId)), stage, openWriter);
     const rows = [takeHomeRow(new Exports(this.api, sessionId)), filmRow(film)];
     const share = new ShareDialog({ controller, report, open, photograph: () => void photograph(), rows });
     const { graphs, panel } = drawers(() => this.resize(), this.secondView !== undefined);

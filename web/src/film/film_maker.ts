@@ -1,7 +1,7 @@
-import { Clip, motionText, readMotion } from "../frames/clip";
+import { Clip } from "../frames/clip";
 import type { OfflineMotion } from "../gen/phrenic/v1/offline_pb";
 import { motionTitle } from "../parameters/presets";
-import type { ExportProgress, Exports } from "../session/exports";
+import type { ExportProgress } from "../session/exports";
 import { Signal } from "../state/signal";
 import { filmTimes } from "./layout";
 import { type FilmStage, Pictures } from "./pictures";
@@ -16,25 +16,30 @@ export interface PictureWriter {
 /** Opens a writer of films of the canvas' size. */
 export type OpenWriter = (canvas: HTMLCanvasElement) => Promise<PictureWriter>;
 
-/** The encoder is loaded with the first film. */
-const openWriter: OpenWriter = async (canvas) => (await import("./film_writer")).FilmWriter.open(canvas);
+/** Where the motion of a film comes from. */
+export interface MotionSource {
+  /** Of the recording; "recording", "fetching" and "failed" are shown as those of the film. */
+  progress: Signal<ExportProgress>;
+  /** Returns the motion; undefined if it fails or is stopped. */
+  record(): Promise<OfflineMotion | undefined>;
+  stop(): void;
+}
 
 /**
- * Makes a film of the next breath: the server records it as for a page, and the view draws it frame by frame at the
- * film's rate, however long a drawing takes. One film at a time. `exports` belongs to the maker.
+ * Makes a film of a breath: the view draws its motion frame by frame at the film's rate, however long a drawing takes.
+ * One film at a time.
  */
 export class FilmMaker {
   readonly progress = new Signal<ExportProgress>({ kind: "idle" });
   private running = new AbortController();
 
   constructor(
-    private readonly exports: Exports,
+    private readonly source: MotionSource,
     private readonly stage: FilmStage,
-    private readonly open: OpenWriter = openWriter,
+    private readonly open: OpenWriter,
     private readonly supported: () => boolean = () => typeof VideoEncoder !== "undefined",
   ) {
-    exports.choose({ format: "html", seconds: 0, bodies: [] });
-    exports.progress.subscribe((work) => {
+    source.progress.subscribe((work) => {
       if (["recording", "fetching", "failed"].includes(work.kind)) this.progress.set(work);
     });
   }
@@ -46,10 +51,9 @@ export class FilmMaker {
     const refusal = this.refusal();
     if (refusal !== undefined) return this.progress.set({ kind: "failed", message: refusal });
     try {
-      const page = await this.exports.start();
-      if (page === undefined || signal.aborted) return;
-      const motion = readMotion(motionText(await page.text()));
-      const film = signal.aborted ? undefined : await this.film(motion, `${motion.scene}.webm`, signal);
+      const motion = await this.source.record();
+      if (motion === undefined || signal.aborted) return;
+      const film = await this.film(motion, `${motion.scene}.webm`, signal);
       if (film === undefined || signal.aborted) return;
       const url = URL.createObjectURL(film);
       this.progress.set({ kind: "ready", file: `${motion.scene}.webm`, size: film.size, url });
@@ -62,7 +66,7 @@ export class FilmMaker {
   /** Cancels the film, and releases the file. */
   stop(): void {
     this.running.abort();
-    this.exports.stop();
+    this.source.stop();
     if (this.progress.value.kind === "ready") URL.revokeObjectURL(this.progress.value.url);
     this.progress.set({ kind: "idle" });
   }
