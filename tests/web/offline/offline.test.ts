@@ -2,11 +2,13 @@ import { create, toBinary } from "@bufbuild/protobuf";
 import { describe, expect, test } from "vitest";
 import { Codec, FrameSchema, GetGeometryResponseSchema, Placement } from "../../../web/src/gen/phrenic/v1/frames_pb";
 import { type OfflineMotion, OfflineMotionSchema } from "../../../web/src/gen/phrenic/v1/offline_pb";
-import { Clip, readMotion } from "../../../web/src/offline/clip";
-import { factsSection, motionTitle } from "../../../web/src/offline/facts";
+import { Clip, motionText, readMotion } from "../../../web/src/frames/clip";
+import { factsSection } from "../../../web/src/offline/facts";
 import { playback, scrubber } from "../../../web/src/offline/playback";
 import { Player } from "../../../web/src/offline/player";
+import { motionTitle } from "../../../web/src/parameters/presets";
 import { bytesOf } from "../fakes/fake_server";
+import { stored } from "../fakes/stored";
 
 const triangle = create(GetGeometryResponseSchema, {
   name: "sheet",
@@ -34,13 +36,6 @@ const motion = create(OfflineMotionSchema, {
   frames: [frame(3, 0), frame(4, 1), frame(5, 3)],
 });
 
-/** Returns the bytes as a Zstandard frame of one block that is not compressed (RFC 8878). */
-function stored(bytes: Uint8Array): Uint8Array {
-  const size = [...new Uint8Array(new BigUint64Array([BigInt(bytes.length)]).buffer)];
-  const block = 1 + (bytes.length << 3);
-  return Uint8Array.from([0x28, 0xb5, 0x2f, 0xfd, 0xe0, ...size, block, block >> 8, block >> 16, ...bytes]);
-}
-
 const textOf = (of: OfflineMotion) => Buffer.from(stored(toBinary(OfflineMotionSchema, of))).toString("base64");
 
 describe("the text of a page", () => {
@@ -48,6 +43,11 @@ describe("the text of a page", () => {
     const read = readMotion(`\n      ${textOf(motion)}\n`);
     expect(read.scene).toBe("thorax");
     expect(read.frames.length).toBe(3);
+  });
+
+  test("IsFoundInThePage", () => {
+    expect(motionText('<body><script type="text/plain" id="motion">\nabc=\n</script></body>').trim()).toBe("abc=");
+    expect(() => motionText("<body></body>")).toThrow(RangeError);
   });
 
   test.each([

@@ -106,7 +106,13 @@ test("EachGroupOfParametersHasASectionUnlessNoneHasAnEffect", () => {
   ]);
   const [postureSection] = sections.filter((each) => each.querySelector("#parameter-posture") !== null);
   expect(postureSection.querySelectorAll("input, select").length).toBeGreaterThan(3);
-  const idleParameters = ["posture", "chest_wall_compliance", "abdominal_compliance", "abdominal_load"];
+  const idleParameters = ["posture", "chest_wall_compliance", "abdominal_compliance", "abdominal_load"].concat([
+    "right_cage_compliance",
+    "left_cage_compliance",
+    "cage_tilt",
+    "flail_right",
+    "flail_left",
+  ]);
   report.set(create(CompileReportSchema, { idleParameters: idleParameters.slice(1) }));
   expect(postureSection.hidden).toBe(false);
   report.set(create(CompileReportSchema, { idleParameters }));

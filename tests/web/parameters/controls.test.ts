@@ -48,6 +48,8 @@ describe("controls from the schema", () => {
       "lungCompliance",
       "airwayResistance",
       "chestWallCompliance",
+      "rightCageCompliance",
+      "leftCageCompliance",
       "abdominalCompliance",
       "elasticity",
       "timeStep",

@@ -5,7 +5,9 @@ import type { Identity } from "../connection/identity";
 import { type ConnectionListener, type ConnectionState, SessionConnection } from "../connection/session_connection";
 import { download } from "../dom/download";
 import { elementById } from "../dom/elements";
-import { FrameBuffer } from "../frames/frame_buffer";
+import { FilmMaker, type OpenWriter } from "../film/film_maker";
+import { recordedMotion } from "../film/recorded_motion";
+import { type DisplayedFrame, FrameBuffer } from "../frames/frame_buffer";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
@@ -15,7 +17,7 @@ import { ComparisonCard } from "../panels/comparison/comparison_card";
 import { distancePanel } from "../panels/comparison/distance_panel";
 import { presetComparison } from "../panels/comparison/preset_comparison";
 import { exportPanel } from "../panels/jobs/export_panel";
-import { takeHomeRow } from "../panels/jobs/take_home";
+import { filmRow, takeHomeRow } from "../panels/jobs/take_home";
 import { studiesPanel } from "../panels/jobs/studies_panel";
 import { uploadPanel } from "../panels/jobs/upload_panel";
 import { parameterSections } from "../panels/parameters/parameter_sections";
@@ -53,6 +55,7 @@ import { Viewer } from "../viewer/viewer";
 import { viewpointKeys } from "../viewer/viewpoints";
 import { drawers } from "./drawers";
 import { dropZone } from "./drop_zone";
+import { filmStage } from "./film_stage";
 import { stageInsets } from "./insets";
 import { SceneTools } from "./scene_tools";
 import { SecondView } from "./second_view";
@@ -64,6 +67,9 @@ import { testHook } from "./test_hook";
 /** Update intervals of texts and numbers, and of graphs [ms]. */
 const statusInterval = 200;
 const graphInterval = 100;
+
+/** The encoder is loaded with the first film. */
+const openWriter: OpenWriter = async (canvas) => (await import("../film/film_writer")).FilmWriter.open(canvas);
 
 /** What the page shows, from its address. */
 export interface PageTarget {
@@ -92,6 +98,8 @@ export class App {
   private readonly tools: SceneTools;
   private readonly graphs: GraphsPanel;
   private readonly secondView: SecondView | undefined;
+  /** The frame of a film that is drawn; undefined while no film is made. */
+  private filmed: DisplayedFrame | undefined;
   private readonly student: StudentView;
   private readonly margins = new Margins();
   private readonly connectionBadge: ConnectionBadge;
@@ -129,7 +137,7 @@ export class App {
     this.viewer = new Viewer(elementById("view") as HTMLCanvasElement, this.viewerHost());
     this.tools = new SceneTools(
       this.viewer,
-      () => this.frames.displayed?.arrays,
+      () => this.displayed?.arrays,
       this.layerStyles,
       this.comparisons,
       new ForceQueries(api, sessionId),
@@ -167,15 +175,20 @@ export class App {
     void this.participation.run();
   }
 
+  private get displayed(): DisplayedFrame | undefined {
+    return this.filmed ?? this.frames.displayed;
+  }
+
   private viewerHost() {
     const reduced = matchMedia("(prefers-reduced-motion: reduce)");
     return {
       advance: () => this.frames.advance(this.clock.now(), reduced.matches),
-      frame: () => this.frames.displayed?.arrays,
+      frame: () => this.displayed?.arrays,
       beforeDraw: (arrays: NonNullable<FrameBuffer["arrays"]>) => {
-        const time = this.frames.displayed?.time ?? 0;
-        this.tools.beforeDraw(time, arrays);
-        if (!this.timeline.replaying) this.graphs.mMode.receive(time, arrays);
+        const live = this.filmed === undefined;
+        const time = this.displayed?.time ?? 0;
+        this.tools.beforeDraw(time, arrays, live);
+        if (live && !this.timeline.replaying) this.graphs.mMode.receive(time, arrays);
       },
       afterDraw: (orientation: Parameters<Margins["show"]>[0]) => {
         this.margins.show(orientation);
@@ -275,7 +288,9 @@ export class App {
       const picture = await viewer.capture((pen, ratio) => this.tools.paint(pen, ratio));
       if (picture !== null) download(`${sessionId}.png`, picture);
     };
-    const rows = [takeHomeRow(new Exports(this.api, sessionId))];
+    const stage = filmStage(viewer, this.tools.coloring, (frame) => (this.filmed = frame));
+    const film = new FilmMaker(recordedMotion(new Exports(this.api, sessionId)), stage, openWriter);
+    const rows = [takeHomeRow(new Exports(this.api, sessionId)), filmRow(film)];
     const share = new ShareDialog({ controller, report, open, photograph: () => void photograph(), rows });
     const { graphs, panel } = drawers(() => this.resize(), this.secondView !== undefined);
     const press = (id: string) => () => document.getElementById(id)?.click();

@@ -166,6 +166,11 @@ export class SceneTools {
     this.viewer.goTo(view);
   }
 
+  /** Returns the view on white as PNG. */
+  pictureForPaper(): Promise<Blob | null> {
+    return this.viewer.captureForPaper();
+  }
+
   /** The camera's pose [m]. */
   get pose(): CameraPose {
     return this.viewer.rig.pose;
@@ -181,12 +186,12 @@ export class SceneTools {
     this.ghosts.receive(frame);
   }
 
-  /** Updates colours, tracks and markers before a frame of this time [s] is drawn. */
-  beforeDraw(time: number, arrays: FrameArrays): void {
+  /** Updates colours, markers and, if `tracks`, tracks before a frame of this time [s] is drawn. */
+  beforeDraw(time: number, arrays: FrameArrays, tracks = true): void {
     this.time = time;
     this.updateFields();
-    this.trackedVertices.receive(time, arrays);
-    if (this.replayTime === undefined) this.measuring.measurements.receive(time, arrays);
+    if (tracks) this.trackedVertices.receive(time, arrays);
+    if (tracks && this.replayTime === undefined) this.measuring.measurements.receive(time, arrays);
     if (this.coloring.field.value !== undefined) this.updateColors();
     this.updateMarkers();
   }

@@ -35,6 +35,7 @@ export function shortcuts(all: Shortcut[], undo: () => void, redo: () => void): 
   );
   document.addEventListener("keydown", (event) => {
     if ((event.target as Element | null)?.closest("dialog, input, select, textarea") || event.altKey) return;
+    if (document.querySelector("[aria-modal]") !== null) return;
     if (event.ctrlKey || event.metaKey) return onUndoKey(event, undo, redo);
     // A focused button is pressed by the space bar.
     if (event.key === " " && (event.target as Element | null)?.closest("button, summary, a")) return;

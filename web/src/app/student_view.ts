@@ -87,6 +87,9 @@ export class StudentView {
       teaches,
       own: new OwnLessons(identity.storage),
       keep: () => this.keepStep(),
+      picture: () => parts.tools.pictureForPaper(),
+      predicts: () => this.graphs.volumeKey !== undefined,
+      print: () => window.print(),
     });
     const open = (query: string) => parts.open(withLessonPlace(query, this.lessons.place.value));
     this.view = new Signal(first);

@@ -7,12 +7,6 @@ import { differences } from "../parameters/differences";
 import { formatNumber } from "../parameters/numbers";
 import { activePreset, presetLabel } from "../parameters/presets";
 
-/** Returns the title of a motion: that of its scene, and the preset if one is active. */
-export function motionTitle(motion: OfflineMotion): { scene: string; preset: string } {
-  const active = activePreset(motion.presets, motion.parameters);
-  return { scene: motion.sceneTitle || motion.scene, preset: active === undefined ? "" : presetLabel(active) };
-}
-
 /** Returns a section with the scene and the preset, how the parameters differ from the scene's, and all parameters. */
 export function factsSection(motion: OfflineMotion): HTMLElement {
   const active = activePreset(motion.presets, motion.parameters);

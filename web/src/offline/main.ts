@@ -1,5 +1,5 @@
 import { elementById } from "../dom/elements";
-import { readMotion } from "./clip";
+import { readMotion } from "../frames/clip";
 import { MotionPage } from "./page";
 
 // The panels are open: the page has no buttons for them.

@@ -1,25 +1,32 @@
 import { create } from "@bufbuild/protobuf";
+import { filmStage } from "../app/film_stage";
 import { stageInsets } from "../app/insets";
 import { SceneStructures } from "../app/scene_structures";
 import { LayerStyles } from "../appearance/layer_styles";
-import { elementById } from "../dom/elements";
+import { elementById, make } from "../dom/elements";
 import { section } from "../dom/rows";
-import { CompileReportSchema } from "../gen/phrenic/v1/report_pb";
+import { FilmMaker } from "../film/film_maker";
+import { FilmWriter } from "../film/film_writer";
+import { Clip } from "../frames/clip";
+import type { DisplayedFrame } from "../frames/frame_buffer";
 import type { OfflineMotion } from "../gen/phrenic/v1/offline_pb";
+import { CompileReportSchema } from "../gen/phrenic/v1/report_pb";
+import * as simplifier from "../geometry/simplified";
+import { filmButton } from "../panels/jobs/take_home";
 import { cutRows } from "../panels/view/cut_rows";
 import { layersPanel } from "../panels/view/layers_panel";
 import { Margins } from "../panels/view/margins";
 import { OrientationCube } from "../panels/view/orientation_cube";
 import { viewBar } from "../panels/view/view_bar";
-import * as simplifier from "../geometry/simplified";
+import { motionTitle } from "../parameters/presets";
+import type { ExportProgress } from "../session/exports";
 import { Signal } from "../state/signal";
 import type { Cut } from "../viewer/clipping";
 import { viewNames } from "../viewer/named_views";
 import { Viewer } from "../viewer/viewer";
 import { type Viewpoint, viewpoints } from "../viewer/viewpoints";
 import { BreathGraphs } from "./breath_graphs";
-import { Clip } from "./clip";
-import { factsSection, motionTitle } from "./facts";
+import { factsSection } from "./facts";
 import { playback, scrubber } from "./playback";
 import { Player } from "./player";
 
@@ -35,6 +42,9 @@ export class MotionPage {
   private readonly cut = new Signal<Cut>({ kind: "none", fraction: 0.5, flipped: false });
   private readonly viewpoints = new Signal<Viewpoint[]>([]);
   private readonly cube = new OrientationCube((view) => this.visit(view));
+
+  /** The frame of a film that is drawn; undefined while no film is made. */
+  private filmed: DisplayedFrame | undefined;
 
   /** Throws RangeError for a motion that is not valid, and Error if the browser has no WebGL 2. */
   constructor(private readonly motion: OfflineMotion) {
@@ -63,7 +73,7 @@ export class MotionPage {
     const reduced = matchMedia("(prefers-reduced-motion: reduce)");
     return {
       advance: () => this.player.advance(performance.now()),
-      frame: () => this.clip.at(this.player.time.value),
+      frame: () => this.filmed?.arrays ?? this.clip.at(this.player.time.value),
       afterDraw: (orientation: Parameters<Margins["show"]>[0]) => {
         this.margins.show(orientation);
         this.cube.show(orientation);
@@ -99,7 +109,19 @@ export class MotionPage {
   private buildPanels(): void {
     elementById("graphs").append(this.graphs.element);
     const cuts = section("Cut", false, ...cutRows(this.cut, (cut) => this.viewer.cutCoordinate(cut)));
-    elementById("panel").append(factsSection(this.motion), layersPanel(this.layerStyles), cuts);
+    elementById("panel").append(factsSection(this.motion), layersPanel(this.layerStyles), cuts, this.filmSection());
+  }
+
+  private filmSection(): HTMLElement {
+    const source = {
+      progress: new Signal<ExportProgress>({ kind: "idle" }),
+      record: async () => this.motion,
+      stop: () => undefined,
+    };
+    const stage = filmStage(this.viewer, undefined, (frame) => (this.filmed = frame));
+    const { go, progress } = filmButton(new FilmMaker(source, stage, (canvas) => FilmWriter.open(canvas)));
+    const detail = make("p", { className: "faint" }, "A WebM video of the breath as the view shows it, for slides.");
+    return section("A film of this breath", false, detail, go, progress);
   }
 
   private showScene(): void {

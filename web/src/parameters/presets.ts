@@ -1,3 +1,4 @@
+import type { OfflineMotion } from "../gen/phrenic/v1/offline_pb";
 import { type Parameters, ParametersSchema } from "../gen/phrenic/v1/parameters_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import type { ParameterName } from "./controls";
@@ -23,6 +24,12 @@ export function activePreset(presets: Preset[], parameters: Parameters | undefin
 export function activeLabel(presets: Preset[], parameters: Parameters | undefined): string | undefined {
   const active = activePreset(presets, parameters);
   return active && presetLabel(active);
+}
+
+/** Returns the title of a motion: that of its scene, and the preset if one is active. */
+export function motionTitle(motion: OfflineMotion): { scene: string; preset: string } {
+  const active = activePreset(motion.presets, motion.parameters);
+  return { scene: motion.sceneTitle || motion.scene, preset: active === undefined ? "" : presetLabel(active) };
 }
 
 /** True if all parameters that the preset sets have its values. */

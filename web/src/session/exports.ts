@@ -27,6 +27,7 @@ export type ExportProgress =
   | { kind: "idle" }
   | { kind: "recording"; file: string; done: number; secondsLeft: number | undefined }
   | { kind: "fetching"; file: string; done: number }
+  | { kind: "filming"; file: string; done: number }
   | { kind: "ready"; file: string; size: number; url: string }
   | { kind: "failed"; message: string };
 
@@ -68,18 +69,23 @@ export class Exports {
     if (answer !== undefined) this.formats.set(answer.formats);
   }
 
-  /** Records and downloads the file; cancels a running export and releases a previous file. */
-  async start(): Promise<void> {
+  /**
+   * Records and downloads the file, and returns it; cancels a running export and releases a previous file. Returns
+   * undefined if it fails or is stopped.
+   */
+  async start(): Promise<Blob | undefined> {
     this.stop();
     const { signal } = (this.running = new AbortController());
     this.progress.set({ kind: "recording", file: "", done: 0, secondsLeft: undefined });
     try {
       const job = await this.record(signal);
       const file = await this.fetch(job, signal);
-      if (signal.aborted) return;
+      if (signal.aborted) return undefined;
       this.progress.set({ kind: "ready", file: job.fileName, size: file.size, url: URL.createObjectURL(file) });
+      return file;
     } catch (error) {
       if (!signal.aborted) this.progress.set({ kind: "failed", message: errorText(error) });
+      return undefined;
     } finally {
       await this.deleteJob();
     }

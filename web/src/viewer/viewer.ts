@@ -23,6 +23,8 @@ import { surfaceVertex } from "./surface_picking";
 
 /** Scenes with at most this many vertices are drawn as diagrams. */
 const maxDiagramVertices = 2000;
+/** Background of pictures and films. */
+export const pictureBackground = "#1f262d";
 /** Radius of a marker [CSS pixels]. */
 const markerSize = 5;
 
@@ -52,7 +54,7 @@ export class Viewer {
   readonly rig: CameraRig;
   private readonly scene = new THREE.Scene();
   /** Depth cue: distant parts fade slightly into the background. */
-  private readonly fog = new THREE.Fog("#1f262d");
+  private readonly fog = new THREE.Fog(pictureBackground);
   private readonly renderer: THREE.WebGLRenderer;
   private views: BodyView[] = [];
   private overlays: ReadonlySet<OverlayKind> = new Set();
@@ -74,6 +76,8 @@ export class Viewer {
   /** Time of the first drawing that shows a frame, since navigation start [ms]; -1 before. */
   firstDrawTime = -1;
   private shown: FrameArrays | undefined;
+  /** True while a film is made: only its frames are drawn. */
+  private filming = false;
 
   constructor(
     readonly canvas: HTMLCanvasElement,
@@ -311,17 +315,62 @@ export class Viewer {
 
   /** Returns the current view as PNG. `annotate` draws over it, in pixels of which `ratio` make a CSS pixel. */
   capture(annotate: (pen: CanvasRenderingContext2D, ratio: number) => void): Promise<Blob | null> {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    return this.picture(pictureBackground, { x: 0, y: 0, width, height }, annotate);
+  }
+
+  /** Returns the part of the view that panels do not cover on white, as PNG, for paper. */
+  captureForPaper(): Promise<Blob | null> {
+    return this.picture("#fff", this.freeArea);
+  }
+
+  private picture(
+    background: string,
+    area: Viewer["freeArea"],
+    annotate?: (pen: CanvasRenderingContext2D, ratio: number) => void,
+  ): Promise<Blob | null> {
+    this.fog.color.set(background);
     this.renderer.render(this.scene, this.rig.camera);
-    const { width, height } = this.canvas;
+    this.fog.color.set(pictureBackground);
+    const ratio = this.canvas.width / Math.max(1, this.canvas.clientWidth);
+    const [x, y, width, height] = [area.x, area.y, area.width, area.height].map((each) => Math.round(each * ratio));
     const copy = Object.assign(document.createElement("canvas"), { width, height });
     const pen = copy.getContext("2d");
     if (pen === null) return Promise.resolve(null);
-    pen.fillStyle = "#1f262d";
+    pen.fillStyle = background;
     pen.fillRect(0, 0, width, height);
     // The drawing buffer is valid only until the browser composes the page.
-    pen.drawImage(this.canvas, 0, 0);
-    annotate(pen, width / this.canvas.clientWidth);
+    pen.drawImage(this.canvas, -x, -y);
+    annotate?.(pen, ratio);
     return new Promise((done) => copy.toBlob(done, "image/png"));
+  }
+
+  /** The part of the canvas that panels do not cover [CSS pixels]. */
+  get freeArea(): { x: number; y: number; width: number; height: number } {
+    const { left, top, bottom } = this.host.insets();
+    const { clientWidth, clientHeight } = this.canvas;
+    const [width, height] = [Math.max(1, clientWidth - left), Math.max(1, clientHeight - top - bottom)];
+    return { x: left, y: top, width, height };
+  }
+
+  /** Begins a film with `ratio` device pixels per CSS pixel: until `endFilm`, only `drawForFilm` draws. */
+  beginFilm(ratio: number): void {
+    this.filming = true;
+    this.renderer.setPixelRatio(ratio);
+  }
+
+  /** Draws the host's frame at once. The canvas that it returns has the picture only until the caller waits. */
+  drawForFilm(): HTMLCanvasElement {
+    this.draw();
+    return this.canvas;
+  }
+
+  /** Ends a film and draws what is due again. */
+  endFilm(): void {
+    this.filming = false;
+    this.renderer.setPixelRatio(this.resolution.ratio);
+    this.shown = undefined;
+    this.refresh();
   }
 
   /** Adapts to the current size of the canvas and of the covered parts. */
@@ -338,6 +387,7 @@ export class Viewer {
   }
 
   private onAnimationFrame(now: number): void {
+    if (this.filming) return;
     this.rig.update(now);
     if (this.host.advance()) this.dirty = true;
     if (this.resolution.recordFrame(now, this.dirty)) {
@@ -345,7 +395,10 @@ export class Viewer {
       this.dirty = true;
     }
     if (this.quality.recordFrame(now, this.dirty)) this.applyQuality();
-    if (!this.dirty) return;
+    if (this.dirty) this.draw();
+  }
+
+  private draw(): void {
     this.dirty = false;
     const frame = this.host.frame();
     if (frame !== undefined && frame !== this.shown) {

@@ -153,6 +153,9 @@ function card(files: Record<string, unknown>) {
     listAnswers: async () => [],
     teaches: new Signal(true),
     own,
+    picture: async () => null,
+    predicts: () => true,
+    print: () => undefined,
     keep: async () => create(LessonStepSchema, { preset: "deep", view: { cut: "coronal", cutPosition: 0.4 } }),
   };
   return { card: new LessonCard(actions), played, answers, own };

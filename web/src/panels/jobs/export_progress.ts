@@ -1,32 +1,64 @@
 import { make } from "../../dom/elements";
 import { alertMessage } from "../../dom/rows";
-import type { ExportProgress, Exports } from "../../session/exports";
+import type { ExportProgress } from "../../session/exports";
+import type { Signal } from "../../state/signal";
+
+/** Something that makes a file, and can be stopped. */
+export interface FileMaking {
+  progress: Signal<ExportProgress>;
+  stop(): void;
+}
+
+const verbs = { recording: "Recording", fetching: "Fetching", filming: "Drawing the film" };
 
 /**
- * Shows the progress and a link to the finished file; `start` is disabled while an export runs. The ids of the elements
- * begin with `id`.
+ * Shows the progress and a link to the finished file; `start` is disabled while a file is made. The ids of the elements
+ * begin with `id`. The focus follows: from `start` to the button that stops, and from there to what comes after.
  */
-export function exportProgress(exports: Exports, start: HTMLButtonElement, id: string): HTMLElement {
+export function exportProgress(making: FileMaking, start: HTMLButtonElement, id: string): HTMLElement {
   const place = make("div", { id: `${id}-progress` });
-  exports.progress.subscribe((work) => {
-    const running = work.kind === "recording" || work.kind === "fetching";
-    start.disabled = running;
-    place.replaceChildren(...progressElements(work, id, () => exports.stop()));
+  const running = new RunningRow(() => making.stop());
+  making.progress.subscribe((work) => {
+    const focused = document.activeElement === start || place.contains(document.activeElement);
+    const runs = work.kind === "recording" || work.kind === "fetching" || work.kind === "filming";
+    start.disabled = runs;
+    if (runs) {
+      running.show(work);
+      if (!place.contains(running.stop)) place.replaceChildren(...running.elements);
+    } else place.replaceChildren(...finishedElements(work, id));
+    if (focused) (runs ? running.stop : (place.querySelector("a") ?? start)).focus();
   });
   return place;
 }
 
-function progressElements(work: ExportProgress, id: string, stop: () => void): HTMLElement[] {
-  if (work.kind === "idle") return [];
-  if (work.kind === "failed") return [alertMessage(work.message)];
-  if (work.kind === "ready") {
-    const size = (work.size / 1e6).toFixed(1);
-    return [make("a", { href: work.url, download: work.file, id: `${id}-link` }, `Save ${work.file} (${size} MB)`)];
+type Running = Extract<ExportProgress, { done: number }>;
+
+/** A bar with words and a button that stops, which stay the same elements while a file is made. */
+class RunningRow {
+  readonly stop: HTMLButtonElement;
+  readonly elements: HTMLElement[];
+  private readonly verb = make("span");
+  private readonly left = make("span");
+  private readonly bar = make("progress", { max: 1, ariaLabel: "Progress of the export" });
+
+  constructor(stop: () => void) {
+    this.stop = make("button", { type: "button", onclick: stop }, "Stop");
+    this.verb.setAttribute("role", "status");
+    const words = make("p", { className: "faint" }, this.verb, this.left);
+    this.elements = [words, make("div", { className: "row" }, this.bar, this.stop)];
   }
-  const bar = make("progress", { max: 1, ariaLabel: "Progress of the export" });
-  bar.value = work.done;
-  const left =
-    work.kind === "recording" && work.secondsLeft !== undefined ? `, ${work.secondsLeft.toFixed(0)} s left` : "";
-  const words = make("p", { className: "faint" }, `${work.kind === "recording" ? "Recording" : "Fetching"}${left}…`);
-  return [words, make("div", { className: "row" }, bar, make("button", { type: "button", onclick: stop }, "Stop"))];
+
+  show(work: Running): void {
+    const seconds = work.kind === "recording" ? work.secondsLeft : undefined;
+    if (this.verb.textContent !== verbs[work.kind]) this.verb.textContent = verbs[work.kind];
+    this.left.textContent = seconds === undefined ? "…" : `, ${seconds.toFixed(0)} s left…`;
+    this.bar.value = work.done;
+  }
+}
+
+function finishedElements(work: ExportProgress, id: string): HTMLElement[] {
+  if (work.kind === "failed") return [alertMessage(work.message)];
+  if (work.kind !== "ready") return [];
+  const size = (work.size / 1e6).toFixed(1);
+  return [make("a", { href: work.url, download: work.file, id: `${id}-link` }, `Save ${work.file} (${size} MB)`)];
 }

@@ -1,6 +1,6 @@
 import { make } from "../../dom/elements";
 import type { Exports } from "../../session/exports";
-import { exportProgress } from "./export_progress";
+import { exportProgress, type FileMaking } from "./export_progress";
 
 /**
  * Returns a row with a button that saves the next breath as a page that plays without a server. `exports` belongs to the
@@ -17,4 +17,26 @@ export function takeHomeRow(exports: Exports): HTMLElement {
   };
   const detail = "One file that plays the next breath without a network: rotation, views, layers, graphs.";
   return make("li", {}, make("div", {}, make("b", {}, title), make("span", {}, detail), progress), go);
+}
+
+type Filming = FileMaking & { start(): Promise<void> };
+
+/** Returns a row with a button that films the next breath, as a WebM file. */
+export function filmRow(film: Filming): HTMLElement {
+  const { go, progress } = filmButton(film);
+  const detail = "A WebM video of the next breath as the view shows it, for slides: 25 pictures per simulated second.";
+  return make("li", {}, make("div", {}, make("b", {}, filmTitle), make("span", {}, detail), progress), go);
+}
+
+const filmTitle = "A film of this breath";
+
+/** Returns a button that makes and saves a film, and its progress. */
+export function filmButton(film: Filming): { go: HTMLElement; progress: HTMLElement } {
+  const go = make("button", { type: "button", id: "film", ariaLabel: `Save: ${filmTitle}` }, "Save");
+  const progress = exportProgress(film, go, "film");
+  go.onclick = async () => {
+    await film.start();
+    progress.querySelector("a")?.click();
+  };
+  return { go, progress };
 }

@@ -12,6 +12,8 @@ import { LessonMaker } from "./lesson_maker";
 import { differenceWords, lessonTest, questionCount, type Score } from "./lesson_test";
 import { questionForm } from "./question_form";
 import type { KeepView } from "./step_form";
+import { StepPictures } from "./step_pictures";
+import { openWorksheet } from "./worksheet_page";
 
 /** What a lesson does to the page, and where it comes from. */
 export interface LessonActions {
@@ -27,6 +29,12 @@ export interface LessonActions {
   teaches: Signal<boolean>;
   own: OwnLessons;
   keep: KeepView;
+  /** Returns a picture of the view, for paper. */
+  picture(): Promise<Blob | null>;
+  /** True if the scene has lungs. */
+  predicts(): boolean;
+  /** Prints the page. */
+  print(): void;
 }
 
 /** The list of lessons, the lesson that is played, and the form that makes one. */
@@ -39,6 +47,7 @@ export class LessonCard {
   private lesson: Lesson | undefined;
   /** Of the test before the lesson; undefined if it was not taken. */
   private before: Score | undefined;
+  private readonly pictures = new StepPictures();
   /** A lesson that was left before it was kept. */
   private draft: LessonMaker | undefined;
 
@@ -55,6 +64,7 @@ export class LessonCard {
   /** Loads and starts a lesson at a step; a step beyond the end is the last one. */
   async start({ name, step }: LessonPlace): Promise<void> {
     this.lesson = this.before = undefined;
+    this.pictures.clear();
     this.place.set({ name, step });
     try {
       const [lesson, names] = await Promise.all([this.load(name), this.actions.names()]);
@@ -72,7 +82,24 @@ export class LessonCard {
     const { value } = this.place;
     if (value === undefined || this.lesson === undefined) return;
     const step = value.step + by;
-    if (step >= 1 && step <= this.lesson.steps.length) this.show({ ...value, step });
+    if (step < 1 || step > this.lesson.steps.length) return;
+    void this.keepPicture();
+    this.show({ ...value, step });
+  }
+
+  /** Keeps the view of the present step for the worksheet. */
+  private async keepPicture(): Promise<void> {
+    const { value } = this.place;
+    if (value !== undefined) await this.pictures.keep(value.step, this.actions.picture());
+  }
+
+  private async print(): Promise<void> {
+    const { lesson, actions } = this;
+    if (lesson === undefined) return;
+    await this.keepPicture();
+    const parts = { pictures: this.pictures.byStep, predicts: actions.predicts() };
+    const closed = () => this.element.querySelector<HTMLElement>("#lesson-print")?.focus();
+    openWorksheet(lesson, parts, { teaches: actions.teaches.value, print: () => actions.print(), closed });
   }
 
   private async load(name: string): Promise<Lesson> {
@@ -93,7 +120,8 @@ export class LessonCard {
     const question = step.question === undefined ? [] : [questionForm(step.question, answered), answerNote()];
     const caption = make("p", { className: "caption" }, step.caption);
     const parts = [title, caption, ...task, ...question, ...this.testFirst(lesson, place)];
-    this.element.replaceChildren(this.head(lesson, place), ...parts, this.results.element, this.buttons(place));
+    const buttons = [this.buttons(place), this.printButton()];
+    this.element.replaceChildren(this.head(lesson, place), ...parts, this.results.element, ...buttons);
     this.results.show(questionCount(lesson) === 0 ? undefined : { ...place, lesson });
     title.focus();
     this.actions.play(lesson, step);
@@ -153,8 +181,14 @@ export class LessonCard {
     return make("div", { className: "lesson-buttons" }, back, leave, next);
   }
 
+  private printButton(): HTMLElement {
+    const onclick = () => void this.print();
+    return make("button", { type: "button", id: "lesson-print", onclick }, "Print a worksheet");
+  }
+
   private leave(): void {
     this.lesson = this.before = undefined;
+    this.pictures.clear();
     this.place.set(undefined);
     this.showList();
   }

@@ -1,10 +1,10 @@
 import { fromBinary } from "@bufbuild/protobuf";
 import { FrameDecoder } from "../decoders/frame_decoder";
 import { decompressAll } from "../decoders/zstd";
-import { interpolate } from "../frames/interpolation";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { type OfflineMotion, OfflineMotionSchema } from "../gen/phrenic/v1/offline_pb";
 import { type Body, decodeBody, type FrameArrays } from "../geometry/bodies";
+import { interpolate } from "./interpolation";
 
 /** Decoded frames that are kept: the two around the displayed time, and one more. */
 const keptFrames = 3;
@@ -17,6 +17,13 @@ export function readMotion(text: string): OfflineMotion {
   const motion = fromBinary(OfflineMotionSchema, decompressAll(bytesOf(text)));
   if (motion.frames.length === 0) throw new RangeError("frames: the motion has no frames.");
   return motion;
+}
+
+/** Returns the text of the motion in the HTML of an exported page. Throws RangeError if the page has none. */
+export function motionText(html: string): string {
+  const text = /<script type="text\/plain" id="motion">([^<]*)</.exec(html)?.[1];
+  if (text === undefined) throw new RangeError("motion: the exported page has no motion.");
+  return text;
 }
 
 function bytesOf(text: string): Uint8Array {

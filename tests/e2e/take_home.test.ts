@@ -1,0 +1,151 @@
+import { statSync } from "node:fs";
+import { readFile, writeFile } from "node:fs/promises";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import type { Browser, Page } from "playwright-core";
+import { afterAll, beforeAll, expect, test } from "vitest";
+import { endAll, isComplaint, startAll, ViewerPage } from "./browser";
+import { outFolder, type Server } from "./server";
+
+let server: Server;
+let browser: Browser;
+
+beforeAll(async () => ([browser, server] = await startAll()));
+
+afterAll(() => endAll(browser, server));
+
+/** Plays a film in a page of its own: its size, duration [s], and pictures at some times as data URLs. */
+async function watch(page: Page, bytes: Buffer, times: number[]) {
+  return page.evaluate(
+    async ([text, moments]) => {
+      const video = document.createElement("video");
+      video.src = `data:video/webm;base64,${text}`;
+      await new Promise((done, fail) => ((video.onloadeddata = done), (video.onerror = fail)));
+      const canvas = Object.assign(document.createElement("canvas"), { width: video.videoWidth, height: video.videoHeight }); // prettier-ignore
+      const pen = canvas.getContext("2d")!;
+      const pictures: string[] = [];
+      let [before, moved, bright] = [undefined as Uint8ClampedArray | undefined, [] as number[], 0];
+      for (const time of moments) {
+        video.currentTime = time;
+        await new Promise((done) => (video.onseeked = done));
+        pen.drawImage(video, 0, 0);
+        // The caption's clock changes in any case: only the picture above it counts.
+        const { data } = pen.getImageData(0, 0, canvas.width, canvas.height - 64);
+        let count = 0;
+        for (let i = 0; i < data.length; i += 4) {
+          if (before !== undefined && Math.abs(data[i] - before[i]) > 24) count++;
+          if (data[i] > 120) bright++;
+        }
+        if (before !== undefined) moved.push(count / (data.length / 4));
+        before = data;
+        pictures.push(canvas.toDataURL("image/png").split(",")[1]);
+      }
+      const part = bright / (moments.length * canvas.width * canvas.height);
+      return { width: canvas.width, height: canvas.height, duration: video.duration, moved, bright: part, pictures };
+    },
+    [bytes.toString("base64"), times] as const,
+  );
+}
+
+test("AFilmOfABreathPlays", async () => {
+  const viewer = await ViewerPage.open(browser, server.url);
+  const { page } = viewer;
+  await page.locator("#coloring-kind").selectOption("displacement", { force: true });
+  await page.click("#share-open");
+  await page.focus("#film");
+  const started = Date.now();
+  const saving = page.waitForEvent("download", { timeout: 150_000 });
+  await page.keyboard.press("Enter");
+  await page.getByText("Drawing the film").waitFor({ timeout: 60_000 });
+  expect(await page.evaluate(() => document.activeElement?.textContent)).toBe("Stop");
+  expect(await viewer.violations()).toEqual([]);
+  const file = await saving;
+  const seconds = (Date.now() - started) / 1000;
+  expect(file.suggestedFilename()).toBe("thorax.webm");
+  const path = join(outFolder, "breath.webm");
+  await file.saveAs(path);
+  const empty = await (await browser.newContext()).newPage();
+  const film = await watch(empty, await readFile(path), [0.02, 1.02, 2.02]);
+  for (const [i, each] of film.pictures.entries()) await writeFile(join(outFolder, `film-${i}.png`), each, "base64");
+  console.log(
+    `film: ${film.width} x ${film.height}, ${film.duration.toFixed(2)} s, ${(statSync(path).size / 1e6).toFixed(2)} MB, made in ${seconds.toFixed(0)} s; moved ${film.moved.map((each) => each.toFixed(3)).join(" ")}`,
+  );
+  expect([film.width % 2, film.height % 2]).toEqual([0, 0]);
+  expect(film.width === 1280 || film.height === 720).toBe(true);
+  // One quiet breath.
+  expect(film.duration).toBeGreaterThan(2);
+  expect(film.duration).toBeLessThan(8);
+  expect(film.bright).toBeGreaterThan(0.02);
+  for (const part of film.moved) expect(part).toBeGreaterThan(0.001);
+  // The view is live again, and a second film can be cancelled.
+  await page.keyboard.press("Escape");
+  await viewer.waitForTick(await viewer.tick());
+  const count = await page.evaluate(() => window.phrenic!.drawCount());
+  await page.waitForFunction((before) => window.phrenic!.drawCount() > before, count);
+  await page.click("#share-open");
+  await page.click("#film");
+  await page.getByText("Drawing the film").waitFor({ timeout: 60_000 });
+  await page.getByRole("button", { name: "Stop" }).click();
+  await page.waitForFunction(() => !(document.getElementById("film") as HTMLButtonElement).disabled);
+  expect(await page.textContent("#film-progress")).toBe("");
+  expect(viewer.consoleErrors).toEqual([]);
+  await Promise.all([empty.context().close(), viewer.close()]);
+});
+
+test("APageThatWasTakenHomeMakesAFilmWithoutANetwork", async () => {
+  const path = join(outFolder, "film-page.html");
+  await server.phrenic("export", "thorax", path);
+  const context = await browser.newContext({ viewport: { width: 900, height: 620 }, offline: true });
+  const page = await context.newPage();
+  const complaints: string[] = [];
+  page.on("console", (message) => isComplaint(message) && complaints.push(message.text()));
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  await page.goto(pathToFileURL(path).href);
+  await page.waitForSelector("#loading", { state: "hidden", timeout: 30_000 });
+  await page.locator("summary", { hasText: "A film of this breath" }).click();
+  const [file] = await Promise.all([page.waitForEvent("download", { timeout: 100_000 }), page.click("#film")]);
+  const film = await watch(await context.newPage(), await readFile((await file.path())!), [0.02, 1.02]);
+  expect(film.duration).toBeGreaterThan(2);
+  expect(film.moved[0]).toBeGreaterThan(0.001);
+  expect(complaints).toEqual([]);
+  await context.close();
+});
+
+/** Returns the number of pages of a PDF file. */
+function pageCount(pdf: Buffer): number {
+  return pdf.toString("latin1").match(/\/Type\s*\/Page\b(?!s)/g)?.length ?? 0;
+}
+
+test("ALessonIsPrintedAsAWorksheet", async () => {
+  const viewer = await ViewerPage.open(browser, `${server.url}?session=thorax&lesson=how-we-breathe&step=1`);
+  const { page } = viewer;
+  await page.evaluate(() => (window.print = () => document.body.setAttribute("data-printed", "")));
+  await page.waitForTimeout(1500);
+  await page.click("#lesson-next");
+  await page.getByRole("heading", { name: "The diaphragm pulls" }).waitFor();
+  await page.waitForTimeout(1500);
+  await page.focus("#lesson-print");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("#worksheet");
+  expect(await page.evaluate(() => document.activeElement?.id)).toBe("worksheet-print");
+  expect(await viewer.violations()).toEqual([]);
+  await viewer.saveScreenshot("worksheet-screen");
+  expect(await page.locator("#worksheet img").count()).toBe(2);
+  await page.press("#worksheet-print", "Enter");
+  await page.waitForSelector("body[data-printed]");
+  const pupil = await page.pdf({ preferCSSPageSize: true, path: join(outFolder, "worksheet.pdf") });
+  await page.getByLabel("Answers for the teacher").check();
+  const teacher = await page.pdf({ preferCSSPageSize: true, path: join(outFolder, "worksheet-answers.pdf") });
+  const pages = pageCount(pupil);
+  console.log(`worksheet: ${pages} pages, with answers ${pageCount(teacher)}`);
+  // Five steps, two with a picture and three without; the answers begin on a page of their own.
+  expect(pages).toBe(2);
+  expect(pageCount(teacher)).toBe(pages + 1);
+  expect(pupil.toString("latin1")).toMatch(/\/MediaBox\s*\[0 0 59[45][.\d]* 84[12]/);
+  await page.keyboard.press("Escape");
+  expect(await page.evaluate(() => document.activeElement?.id)).toBe("lesson-print");
+  expect(await page.locator("#worksheet").count()).toBe(0);
+  expect(await viewer.violations()).toEqual([]);
+  expect(viewer.consoleErrors).toEqual([]);
+  await viewer.close();
+});

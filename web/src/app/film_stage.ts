@@ -1,0 +1,34 @@
+import type { Coloring } from "../appearance/coloring";
+import { fieldInfo, forceKindOf } from "../appearance/fields";
+import type { FilmStage } from "../film/pictures";
+import type { DisplayedFrame } from "../frames/frame_buffer";
+import { pictureBackground, type Viewer } from "../viewer/viewer";
+
+/** Returns the viewer as the stage of a film. `show` sets the frame that the viewer's host displays; undefined: live. `coloring` is undefined on a page without colours. */
+export function filmStage(
+  viewer: Viewer,
+  coloring: Coloring | undefined,
+  show: (frame: DisplayedFrame | undefined) => void,
+): FilmStage {
+  return {
+    background: pictureBackground,
+    refusal: () =>
+      forceKindOf(coloring?.field.value) === undefined
+        ? undefined
+        : "A recorded breath has no forces: choose another field for the colours.",
+    colors: () => {
+      const [info, scale] = [fieldInfo(coloring?.field.value), coloring?.scale.value];
+      return info === undefined || scale === undefined ? undefined : { label: info.label, scale };
+    },
+    area: () => viewer.freeArea,
+    begin: (ratio) => viewer.beginFilm(ratio),
+    draw: (frame) => {
+      show(frame);
+      return viewer.drawForFilm();
+    },
+    end: () => {
+      show(undefined);
+      viewer.endFilm();
+    },
+  };
+}

@@ -1,0 +1,71 @@
+import type { ColorScale } from "../appearance/color_scale";
+import { captionHeight } from "./layout";
+
+/** What the caption of a film says. */
+export interface Caption {
+  /** Scene and preset. */
+  title: string;
+  /** Name of the field that colours the surface, and its scale; undefined for the bodies' own colours. */
+  colors: { label: string; scale: ColorScale } | undefined;
+}
+
+const disclaimer = "Research and teaching; not for clinical use";
+const family = "system-ui, sans-serif";
+const margin = 16;
+const barWidth = 160;
+const gap = 10;
+
+/** Draws the caption for `time` [s] into the lowest part of a film of this size. */
+export function drawCaption(
+  pen: CanvasRenderingContext2D,
+  { title, colors }: Caption,
+  time: number,
+  { width, height }: { width: number; height: number },
+): void {
+  const top = height - captionHeight;
+  pen.fillStyle = "#11161b";
+  pen.fillRect(0, top, width, captionHeight);
+  pen.fillStyle = "#f1f4f7";
+  pen.textBaseline = "middle";
+  const clock = Math.min(90, width / 4);
+  write(pen, title, margin, top + 21, { font: `600 19px ${family}`, room: width - 2 * margin - clock });
+  write(pen, `${time.toFixed(2)} s`, width - margin, top + 21, {
+    font: `600 19px ${family}`,
+    room: clock,
+    right: true,
+  });
+  const half = (width - 2 * margin) / 2;
+  write(pen, disclaimer, width - margin, top + 46, { font: `13px ${family}`, room: half - gap, right: true });
+  if (colors !== undefined) drawScale(pen, colors, top + 46, half);
+}
+
+function drawScale(
+  pen: CanvasRenderingContext2D,
+  { label, scale }: NonNullable<Caption["colors"]>,
+  y: number,
+  room: number,
+): void {
+  const bar = Math.min(barWidth, room / 3);
+  const style = { font: `13px ${family}`, room: (room - bar - 2 * gap) / 2 };
+  const words = `${label}  ${scale.low}`;
+  write(pen, words, margin, y, style);
+  const left = margin + Math.min(pen.measureText(words).width, style.room) + gap;
+  for (let x = 0; x < bar; x++) {
+    pen.fillStyle = `rgb(${scale.color(scale.low + (x / bar) * (scale.top - scale.low)).join(" ")})`;
+    pen.fillRect(left + x, y - 5, 1.5, 10);
+  }
+  pen.fillStyle = "#f1f4f7";
+  write(pen, `${scale.top} ${scale.unit}`, left + bar + gap, y, style);
+}
+
+function write(
+  pen: CanvasRenderingContext2D,
+  words: string,
+  x: number,
+  y: number,
+  { font, room, right = false }: { font: string; room: number; right?: boolean },
+): void {
+  pen.font = font;
+  pen.textAlign = right ? "right" : "left";
+  pen.fillText(words, x, y, Math.max(1, room));
+}

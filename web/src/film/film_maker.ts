@@ -1,0 +1,101 @@
+import { Clip } from "../frames/clip";
+import type { OfflineMotion } from "../gen/phrenic/v1/offline_pb";
+import { motionTitle } from "../parameters/presets";
+import type { ExportProgress } from "../session/exports";
+import { Signal } from "../state/signal";
+import { filmTimes } from "./layout";
+import { type FilmStage, Pictures } from "./pictures";
+
+/** Takes the pictures of a film and makes its file. */
+export interface PictureWriter {
+  add(): Promise<void>;
+  finish(): Promise<Blob>;
+  cancel(): void;
+}
+
+/** Opens a writer of films of the canvas' size. */
+export type OpenWriter = (canvas: HTMLCanvasElement) => Promise<PictureWriter>;
+
+/** Where the motion of a film comes from. */
+export interface MotionSource {
+  /** Of the recording; "recording", "fetching" and "failed" are shown as those of the film. */
+  progress: Signal<ExportProgress>;
+  /** Returns the motion; undefined if it fails or is stopped. */
+  record(): Promise<OfflineMotion | undefined>;
+  stop(): void;
+}
+
+/**
+ * Makes a film of a breath: the view draws its motion frame by frame at the film's rate, however long a drawing takes.
+ * One film at a time.
+ */
+export class FilmMaker {
+  readonly progress = new Signal<ExportProgress>({ kind: "idle" });
+  private running = new AbortController();
+
+  constructor(
+    private readonly source: MotionSource,
+    private readonly stage: FilmStage,
+    private readonly open: OpenWriter,
+    private readonly supported: () => boolean = () => typeof VideoEncoder !== "undefined",
+  ) {
+    source.progress.subscribe((work) => {
+      if (["recording", "fetching", "failed"].includes(work.kind)) this.progress.set(work);
+    });
+  }
+
+  /** Records and films a breath; cancels a film that is being made and releases the one before. */
+  async start(): Promise<void> {
+    this.stop();
+    const { signal } = (this.running = new AbortController());
+    const refusal = this.refusal();
+    if (refusal !== undefined) return this.progress.set({ kind: "failed", message: refusal });
+    try {
+      const motion = await this.source.record();
+      if (motion === undefined || signal.aborted) return;
+      const film = await this.film(motion, `${motion.scene}.webm`, signal);
+      if (film === undefined || signal.aborted) return;
+      const url = URL.createObjectURL(film);
+      this.progress.set({ kind: "ready", file: `${motion.scene}.webm`, size: film.size, url });
+    } catch (error) {
+      const reason = error instanceof Error ? error.message : String(error);
+      if (!signal.aborted) this.progress.set({ kind: "failed", message: `The film cannot be made: ${reason}.` });
+    }
+  }
+
+  /** Cancels the film, and releases the file. */
+  stop(): void {
+    this.running.abort();
+    this.source.stop();
+    if (this.progress.value.kind === "ready") URL.revokeObjectURL(this.progress.value.url);
+    this.progress.set({ kind: "idle" });
+  }
+
+  private refusal(): string | undefined {
+    if (this.supported()) return this.stage.refusal();
+    return "This browser has no video encoder (WebCodecs) here: use a current Chrome, Edge, Firefox or Safari, and open this page by https or on the server's own machine (localhost).";
+  }
+
+  /** Returns the file; undefined if it is cancelled. */
+  private async film(motion: OfflineMotion, file: string, signal: AbortSignal): Promise<Blob | undefined> {
+    const clip = new Clip(motion.frames, motion.bodies);
+    const { scene, preset } = motionTitle(motion);
+    const title = preset === "" ? scene : `${scene} · ${preset}`;
+    const pictures = new Pictures(this.stage, { title, colors: this.stage.colors() });
+    const writer = await this.open(pictures.canvas);
+    pictures.begin();
+    try {
+      const times = filmTimes(clip.length);
+      for (const [i, time] of times.entries()) {
+        pictures.take({ time: motion.frames[0].time + time, arrays: clip.at(time) }, time);
+        await writer.add();
+        if (signal.aborted) return undefined;
+        this.progress.set({ kind: "filming", file, done: (i + 1) / times.length });
+      }
+      return await writer.finish();
+    } finally {
+      writer.cancel();
+      this.stage.end();
+    }
+  }
+}

@@ -1,0 +1,16 @@
+import { motionText, readMotion } from "../frames/clip";
+import type { Exports } from "../session/exports";
+import type { MotionSource } from "./film_maker";
+
+/** Returns the next breath of a session, which the server records as for a page. `exports` belongs to the source. */
+export function recordedMotion(exports: Exports): MotionSource {
+  exports.choose({ format: "html", seconds: 0, bodies: [] });
+  return {
+    progress: exports.progress,
+    record: async () => {
+      const page = await exports.start();
+      return page && readMotion(motionText(await page.text()));
+    },
+    stop: () => exports.stop(),
+  };
+}
