@@ -69,7 +69,7 @@ const statusInterval = 200;
 const graphInterval = 100;
 
 /** The encoder is loaded with the first film. */
-const openWriter: OpenWriter = async (canvas) => (await import("../film/film_writer")).FilmWriter.open(canvas);
+const openWriter: OpenWriter = async (...of) => (await import("../film/film_writer")).FilmWriter.open(...of);
 
 /** What the page shows, from its address. */
 export interface PageTarget {

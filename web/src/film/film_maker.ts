@@ -3,7 +3,7 @@ import type { OfflineMotion } from "../gen/phrenic/v1/offline_pb";
 import { motionTitle } from "../parameters/presets";
 import type { ExportProgress } from "../session/exports";
 import { Signal } from "../state/signal";
-import { filmTimes } from "./layout";
+import { filmRate, filmTimes } from "./layout";
 import { type FilmStage, Pictures } from "./pictures";
 
 /** Takes the pictures of a film and makes its file. */
@@ -13,8 +13,8 @@ export interface PictureWriter {
   cancel(): void;
 }
 
-/** Opens a writer of films of the canvas' size. */
-export type OpenWriter = (canvas: HTMLCanvasElement) => Promise<PictureWriter>;
+/** Opens a writer of films of the canvas' size with `rate` frames per second. */
+export type OpenWriter = (canvas: HTMLCanvasElement, rate: number) => Promise<PictureWriter>;
 
 /** Where the motion of a film comes from. */
 export interface MotionSource {
@@ -82,7 +82,7 @@ export class FilmMaker {
     const { scene, preset } = motionTitle(motion);
     const title = preset === "" ? scene : `${scene} · ${preset}`;
     const pictures = new Pictures(this.stage, { title, colors: this.stage.colors() });
-    const writer = await this.open(pictures.canvas);
+    const writer = await this.open(pictures.canvas, filmRate);
     pictures.begin();
     try {
       const times = filmTimes(clip.length);

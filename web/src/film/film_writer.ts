@@ -1,5 +1,4 @@
 import { ArrayBufferTarget, Muxer } from "webm-muxer";
-import { filmRate } from "./layout";
 
 /** Encoded bits per second, frames from one key frame to the next, and frames that wait for the encoder at most. */
 const bitrate = 4_000_000;
@@ -18,6 +17,7 @@ export class FilmWriter {
 
   private constructor(
     private readonly canvas: HTMLCanvasElement,
+    private readonly rate: number,
     private readonly encoder: VideoEncoder,
     private readonly muxer: Muxer<ArrayBufferTarget>,
     onFault: { report: (error: Error) => void },
@@ -25,14 +25,14 @@ export class FilmWriter {
     onFault.report = (error) => (this.fault = error);
   }
 
-  /** Returns a writer of films of the canvas' size. Throws Error if the browser encodes neither VP9 nor VP8. */
-  static async open(canvas: HTMLCanvasElement): Promise<FilmWriter> {
+  /** Returns a writer of films of the canvas' size with `rate` frames per second. Throws Error if the browser encodes neither VP9 nor VP8. */
+  static async open(canvas: HTMLCanvasElement, rate: number): Promise<FilmWriter> {
     const { width, height } = canvas;
     for (const { codec, name } of codecs) {
-      const config: VideoEncoderConfig = { codec, width, height, bitrate, framerate: filmRate };
+      const config: VideoEncoderConfig = { codec, width, height, bitrate, framerate: rate };
       const answer = await VideoEncoder.isConfigSupported(config).catch(() => undefined);
       if (answer?.supported !== true) continue;
-      const video = { codec: name, width, height, frameRate: filmRate };
+      const video = { codec: name, width, height, frameRate: rate };
       const muxer = new Muxer({ target: new ArrayBufferTarget(), video });
       const onFault = { report: (_: Error) => undefined as void };
       const encoder = new VideoEncoder({
@@ -40,14 +40,14 @@ export class FilmWriter {
         error: (error) => onFault.report(error),
       });
       encoder.configure(config);
-      return new FilmWriter(canvas, encoder, muxer, onFault);
+      return new FilmWriter(canvas, rate, encoder, muxer, onFault);
     }
     throw new Error("this browser encodes neither VP9 nor VP8: use a current Chrome, Edge or Firefox");
   }
 
   /** Adds the canvas' picture as the next frame. Resolves when the page may draw the next. Throws Error if it fails. */
   async add(): Promise<void> {
-    const microseconds = (frames: number) => Math.round((1e6 * frames) / filmRate);
+    const microseconds = (frames: number) => Math.round((1e6 * frames) / this.rate);
     const timestamp = microseconds(this.frames);
     const frame = new VideoFrame(this.canvas, { timestamp, duration: microseconds(this.frames + 1) - timestamp });
     this.encoder.encode(frame, { keyFrame: this.frames % keyInterval === 0 });

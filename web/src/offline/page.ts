@@ -119,7 +119,7 @@ export class MotionPage {
       stop: () => undefined,
     };
     const stage = filmStage(this.viewer, undefined, (frame) => (this.filmed = frame));
-    const { go, progress } = filmButton(new FilmMaker(source, stage, (canvas) => FilmWriter.open(canvas)));
+    const { go, progress } = filmButton(new FilmMaker(source, stage, (...of) => FilmWriter.open(...of)));
     const detail = make("p", { className: "faint" }, "A WebM video of the breath as the view shows it, for slides.");
     return section("A film of this breath", false, detail, go, progress);
   }
