@@ -25,7 +25,7 @@ test("ThePresetsStandInGroupsAndTheFirstIsOpen", async () => {
     "Chest wall and abdomen",
     "Support",
   ]);
-  expect(await viewer.page.locator("#presets button").count()).toBe(30);
+  expect(await viewer.page.locator("#presets button").count()).toBe(33);
   expect(await viewer.page.locator("#presets button:visible").count()).toBe(9);
   expect(await viewer.violations()).toEqual([]);
 });

@@ -160,7 +160,7 @@ describe("the buttons", () => {
   test("APresetIsAppliedAndShownAsPressed", async () => {
     const preset = (name: string) => viewer.page.locator(`#presets button:text-is("${name}")`);
     const names = await viewer.page.locator("#presets button").allTextContents();
-    expect(names).toHaveLength(30);
+    expect(names).toHaveLength(33);
     expect(names).toEqual(expect.arrayContaining(["Quiet, supine", "Deep breath", "Sniff", "Right palsy", "COPD"]));
     const breathLength = async () => (await server.session()).parameters.breath_length;
     await preset("Panting").click();

@@ -49,10 +49,11 @@ class BatchTest(SessionTest):
         self.assertEqual(len(seen), len(forces), "a run came twice or not at all")
         self.assertEqual(dict(seen), expected)
         self.assertEqual(asked[0], set())
-        self.assertEqual(len(asked), 3)
+        # Once or twice: what comes after the second cut may have arrived before it.
+        self.assertIn(len(asked), (2, 3))
         for before, after in zip(asked, asked[1:]):
             self.assertLess(before, after)
-        self.assertLessEqual({index for index, _ in seen[:9]}, asked[-1])
+        self.assertLessEqual({index for index, _ in seen[:3]}, asked[1])
 
     def test_a_connection_that_stays_lost_is_an_error(self):
         relay, server, asked = self.relayed(retries=1)

@@ -43,18 +43,22 @@ absl::StatusOr<std::unique_ptr<Force>> ChestWall::Make(const v1::ChestWall& scen
                                            ": check the ribs' end states"));
     }
   }
-  force->AddParts(scene, builder);
+  if (absl::Status status = force->AddParts(scene, path, builder); !status.ok()) return status;
   builder.ReportElement(
       "force", force->name(), 2 + static_cast<std::int64_t>(force->parts_.size()), "coordinates",
       absl::StrFormat("K = %.3g and %.3g J", force->handles_[0].stiffness, force->handles_[1].stiffness));
   return force;
 }
 
-void ChestWall::AddParts(const v1::ChestWall& scene, const ModelBuilder& builder) {
+absl::Status ChestWall::AddParts(const v1::ChestWall& scene, std::string_view path, const ModelBuilder& builder) {
   for (const CagePart part : {kCageSides, kRightSegment, kLeftSegment}) {
     if (!wall_->parts[part]) continue;
     const Coordinate& coordinate = *wall_->parts[part];
     const double slope = wall_->volumes.right.ByPart({}, part) + wall_->volumes.left.ByPart({}, part);
+    if (part != kCageSides && !(slope > 0)) {
+      return FieldError(path, absl::StrCat("the volume inside the wall does not grow with the ", coordinate.name,
+                                           ": name ribs of the scene in free.segments"));
+    }
     const double stiffness = part == kCageSides
                                  ? scene.side_coupling() * (handles_[0].stiffness + handles_[1].stiffness)
                                  : slope * slope / scene.segment_compliance();
@@ -62,6 +66,7 @@ void ChestWall::AddParts(const v1::ChestWall& scene, const ModelBuilder& builder
     parts_.push_back(
         {part, coordinate, stiffness, scene.damping_rate() * inertia, kHoldingRate * kHoldingRate * inertia, 0});
   }
+  return absl::OkStatus();
 }
 
 absl::Status ChestWall::BalanceAtRest(const ConstPoints& load, const ConstPoints&, ModelBuilder&, Eigen::VectorXd&) {

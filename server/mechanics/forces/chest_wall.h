@@ -66,7 +66,8 @@ class ChestWall final : public Force {
   double Stiffness(const Handle& handle, const EvalContext& at, double k) const {
     return handle.stiffness * (k < 0 ? stiffening_below_rest_ : 1) / at.parameters.chest_wall_compliance();
   }
-  void AddParts(const v1::ChestWall& scene, const ModelBuilder& builder);
+  // INVALID_ARGUMENT if the volume inside the wall does not grow with a segment.
+  absl::Status AddParts(const v1::ChestWall& scene, std::string_view path, const ModelBuilder& builder);
   // a, of both sides or of one: `share` scales what raises the ribs.
   double Activation(const EvalContext& at, double share = 1) const;
   // What a handle of one side has: half the stiffness, and its distance from where it rests.

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "server/mechanics/step/step.h"
 #include "server/mechanics/step/step_plan.h"
 #include "tests/compile_text.h"
@@ -133,11 +134,14 @@ TEST(FreeCage, ASideWithoutMusclesStaysBehind) {
 }
 
 TEST(FreeCage, SegmentsOfRibsThatTheSceneLacksAreRefused) {
-  for (const char* bad : {"segments { first_rib: 7 last_rib: 5 } ", "segments { first_rib: 5 last_rib: 9 } "}) {
-    const auto refused = TryCompileText(FreeCage(kChestWall, bad));
+  for (const char* bad : {"first_rib: 7 last_rib: 5", "first_rib: 5 last_rib: 13", "first_rib: 0 last_rib: 5"}) {
+    const auto refused = TryCompileText(FreeCage(kChestWall, absl::StrCat("segments { ", bad, " } ")));
     EXPECT_NE(std::string(refused.status().message()).find("ribs.free.segments"), std::string::npos)
         << refused.status();
   }
+  const auto none = TryCompileText(FreeCage(kChestWall, "segments { first_rib: 11 last_rib: 12 } "));
+  EXPECT_NE(std::string(none.status().message()).find("does not grow with the right segment"), std::string::npos)
+      << none.status();
 }
 
 // As above, along a direction that leaves the pressures of both sides alike, so that the cones' common face carries no
