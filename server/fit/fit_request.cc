@@ -44,7 +44,7 @@ absl::StatusOr<Landmarks> ReadFiles(const v1::FitMotionRequest& request) {
   }
   absl::StatusOr<Landmarks> first = ReadFile(request, 0);
   if (!first.ok() || request.landmarks_size() == 1) return first;
-  const absl::StatusOr<Landmarks> second = ReadFile(request, 1);
+  absl::StatusOr<Landmarks> second = ReadFile(request, 1);
   if (!second.ok()) return second;
   return PairLandmarks(*first, *second);
 }
