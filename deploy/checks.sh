@@ -9,11 +9,11 @@ scripts    40 shellcheck, and the tests of deploy/
 proto       5 buf's lint; that clients of the last release go on working
 web        40 type check, unit tests and build of the viewer
 build     430 the Release build by gcc, warnings as errors
-tests     300 what depends on that build: laws of mechanics, formats, physiology, judges, benches, trials
-e2e       490 the viewer in headless Chromium
+tests     330 what depends on that build: laws of mechanics, formats, physiology, judges, benches, trials
+e2e       430 the viewer in headless Chromium
 asan     1200 all other tests under ASan and UBSan, built by clang
 tsan      120 the tests of threads under ThreadSanitizer
-tidy      370 clang-tidy; gcc's warnings in the tests that only clang compiles
+tidy      330 clang-tidy; gcc's warnings in the tests that only clang compiles
 quick_build 480 the Release build of the server and of the laws
 laws       60 the laws of the tree and of mechanics, and the golden files
 browser    40 one end-to-end test

@@ -9,9 +9,9 @@
 //   E = sum K k^2/2 - Q_rest k  [J].
 // Where the sides move apart (motions/insertion.h), by t from the mean, each has half of K and of the muscles: right
 // k + t - t_0 and left k - t + t_0 stand for k, with the live parameters t_0 cage_tilt, right_cage_compliance and
-// left_cage_compliance, which divide K once more, and right_intercostals and left_intercostals, which scale a. Sternum
-// and spine couple the sides by E = K_t (t - t_0)^2/2, K_t the `side_coupling` of the sum of both K. A segment of
-// broken ribs is held by soft tissue and driven by the pleural pressure alone:
+// left_cage_compliance, which divide K of their side additionally, and right_intercostals and left_intercostals, which
+// scale a. Sternum and spine couple the sides by E = K_t (t - t_0)^2/2, K_t the `side_coupling` of the sum of both K. A
+// segment of broken ribs is held by soft tissue and driven by the pleural pressure alone:
 //   Q_u = Q_rest - K_u u (1 + u^2) - c M_u u',  K_u = V_u^2/(C_s flail),
 // C_s the segment_compliance and flail one of the live parameters flail_right and flail_left. What is not moved is held
 // at 0, a critically damped spring leads it back.

@@ -8,7 +8,7 @@ const maxMovement = 5;
 const maxDuration = 500;
 
 /**
- * Calls `picked` with the vertex under each click; undefined if there is none. Returns a function that picks at a place on
+ * Calls `picked` with the vertex under each click; undefined if it meets no body. Returns a function that picks at a place on
  * the canvas [CSS pixels] as a click does, for the keyboard.
  */
 export function enablePicking(

@@ -67,8 +67,9 @@ export class Viewer {
   private readonly quality: QualityChooser;
   /** True if the bodies have no ambient occlusion yet. */
   private unshaded = false;
-  /** True if the bodies do not have the triangles of plain quality yet. */
+  /** True if a shown body does not have the triangles of plain quality yet. */
   private unsimplified = false;
+  private diagram = false;
   private cut: Cut = { kind: "none", fraction: 0.5, flipped: false };
   private box = new THREE.Box3();
   private dirty = true;
@@ -116,7 +117,7 @@ export class Viewer {
     this.shown = undefined;
     this.ghost.clear();
     this.comparedSurface.clear();
-    const diagram = verticesOf(bodies) <= maxDiagramVertices;
+    const diagram = (this.diagram = verticesOf(bodies) <= maxDiagramVertices);
     this.views = bodies.map((body) => new BodyView(body, diagram));
     for (const view of this.views) {
       view.setDetailed(this.quality.quality !== "plain");
@@ -171,7 +172,8 @@ export class Viewer {
   private async simplify(): Promise<void> {
     this.unsimplified = false;
     const simplifier = await this.host.simplifier();
-    await Promise.all(this.views.map((view) => view.simplify(simplifier)));
+    const shown = this.views.filter(({ group }) => group.visible);
+    await Promise.all(shown.map((view) => view.simplify(simplifier)));
     this.refresh();
   }
 
@@ -210,6 +212,7 @@ export class Viewer {
   /** Sets the opacity of all bodies of a layer, 0 to 1. */
   setLayerOpacity(layer: string, opacity: number): void {
     for (const view of this.views) if (view.body.layer === layer) view.setOpacity(opacity);
+    this.unsimplified ||= opacity > 0 && !this.diagram;
     this.shown = undefined; // hidden bodies did not follow the frames
     this.refresh();
   }
