@@ -6,6 +6,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "client/cli/scene_argument.h"
 #include "server/schema/fields.h"
 #include "server/schema/names.h"
@@ -94,11 +95,10 @@ constexpr KindRow kKindRows[] = {
 };
 
 // True if the row applies to the argument. "study --check" applies to "study error" too.
-bool Fits(const KindRow& row, const std::string& path, const std::string& name) {
-  const std::vector<std::string> words = absl::StrSplit(row.name, ' ');
-  if (words.back() != name) return false;
-  const std::vector<std::string> commands = absl::StrSplit(path, ' ');
-  return words.size() == 1 || commands.front() == words.front();
+bool Fits(const KindRow& row, absl::string_view path, absl::string_view name) {
+  absl::string_view command = row.name;  // asked for each option of each command at the start: allocates nothing
+  if (!absl::ConsumeSuffix(&command, name)) return false;
+  return command.empty() || (absl::ConsumeSuffix(&command, " ") && command == path.substr(0, path.find(' ')));
 }
 
 void ApplyTo(const CLI::App& command, CLI::Option& option) {
