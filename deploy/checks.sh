@@ -197,8 +197,13 @@ check_shellcheck() {
     client/examples/*.sh tests/client/slurm/* .ci/run tests/deploy/*.sh)
 }
 
+check_compose() {
+  docker-compose -f "$root/deploy/compose.yaml" config --quiet
+}
+
 stage_scripts() {
   check check_shellcheck
+  check check_compose
   check "$root/tests/deploy/deploy_test.sh"
 }
 
@@ -340,7 +345,7 @@ stage_asan() {
   if [[ $(id -u) == 0 ]] && "$root/tests/client/slurm/start" "$slurm" >/dev/null; then
     export SLURM_CONF=$slurm/slurm.conf
   fi
-  ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1 programs "$folder"
+  ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1:malloc_context_size=10 UBSAN_OPTIONS=print_stacktrace=1 programs "$folder"
   if [[ -n ${SLURM_CONF:-} ]]; then "$root/tests/client/slurm/stop" "$slurm"; fi
 }
 
@@ -371,7 +376,7 @@ released_programs() {
 check_warnings() {
   local folder=$root/build/tidy
   configure "$folder" "${whole[@]}" && build "$folder" generated_headers &&
-    "$root/deploy/units.py" "$folder" "/tests/CMakeFiles/(?!($(released_programs))_test).*_test\.dir/Unity/|/tests/fuzz/" gcc
+    "$root/deploy/units.py" "$folder" "/tests/CMakeFiles/(?!($(released_programs))_test).*_test\.dir/Unity/|/tests/CMakeFiles/fuzz_replay\.dir/" gcc
 }
 
 stage_tidy() {
