@@ -46,7 +46,9 @@ export class Fluoroscopy {
   /** Starts another scene; the button is hidden for scenes without lungs. */
   start(bodies: Body[]): void {
     this.close();
-    this.button.hidden = !bodies.some(({ name, layer, triangles }) => triangles.length > 0 && /lung/.test(name + layer));
+    this.button.hidden = !bodies.some(
+      ({ name, layer, triangles }) => triangles.length > 0 && /lung/.test(name + layer),
+    );
   }
 
   /** Opens or closes the picture. */

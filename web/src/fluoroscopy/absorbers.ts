@@ -45,7 +45,14 @@ export class Absorbers {
 
   constructor(bodies: Body[]) {
     const outside = materials.wall.coefficient;
-    this.outline = { name: "trunk", vertices: none, triangles: noTriangles, weight: outside, pose: undefined, moving: true };
+    this.outline = {
+      name: "trunk",
+      vertices: none,
+      triangles: noTriangles,
+      weight: outside,
+      pose: undefined,
+      moving: true,
+    };
     for (const body of bodies.filter(({ triangles }) => triangles.length > 0)) {
       const absorption = absorptionOf(body);
       if (absorption === undefined) continue;

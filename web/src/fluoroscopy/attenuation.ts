@@ -5,7 +5,15 @@ import type { Body } from "../geometry/bodies";
  * (NIST Standard Reference Database 126; tissues of ICRU Report 44), interpolated in both logarithms. The server has the same numbers
  * in `server/fluoroscopy/attenuation.cc`.
  */
-const perMass = { cortical: 0.2616, soft: 0.1924, adipose: 0.1879, blood: 0.193, lung: 0.1928, air: 0.1758, water: 0.1937 };
+const perMass = {
+  cortical: 0.2616,
+  soft: 0.1924,
+  adipose: 0.1879,
+  blood: 0.193,
+  lung: 0.1928,
+  air: 0.1758,
+  water: 0.1937,
+};
 
 /** Linear attenuation coefficients at 70 keV [1/m], from the coefficients by mass and a density [g/cm^3]. */
 const linear = (coefficient: number, density: number) => 100 * coefficient * density;

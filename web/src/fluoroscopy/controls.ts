@@ -78,7 +78,9 @@ function grey({ window, darkBones, domes }: Settings): HTMLElement {
     [centreWords.value, widthWords.value] = [Number(centre.value).toFixed(1), Number(width.value).toFixed(1)];
   });
   const automatic = make("button", { type: "button", onclick: () => window.set(undefined) }, "Automatic grey");
-  const dark = switchRow("Bones dark", "Dark where little passes, as on a fluorescent screen", (on) => darkBones.set(on));
+  const dark = switchRow("Bones dark", "Dark where little passes, as on a fluorescent screen", (on) =>
+    darkBones.set(on),
+  );
   const marked = switchRow("Mark the domes", "A line at the highest point of each dome", (on) => domes.set(on));
   domes.subscribe((on) => (marked.input.checked = on));
   const rows = [sliderRow("Window centre", centre, centreWords), sliderRow("Window width", width, widthWords)];

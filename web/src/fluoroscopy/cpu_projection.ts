@@ -35,7 +35,14 @@ function screenOf(vertices: Float32Array, at: Projection, size: number): Screen 
   return screen;
 }
 
-function addTriangle(sums: Float64Array, s: Screen, [a, b, c]: number[], weight: number, at: Projection, size: number): void {
+function addTriangle(
+  sums: Float64Array,
+  s: Screen,
+  [a, b, c]: number[],
+  weight: number,
+  at: Projection,
+  size: number,
+): void {
   // Rows go down: a front face is clockwise here.
   const area = side(s, a, b, s[c], s[c + 1]);
   if (area === 0) return;
@@ -73,7 +80,14 @@ function within(value: number, s: Screen, from: number, to: number, facing: numb
 }
 
 /** Distance along the ray, from the source, or from the isocentre's plane for parallel rays [m]. */
-function distance(s: Screen, corners: number[], parts: number[], [x, y]: number[], at: Projection, size: number): number {
+function distance(
+  s: Screen,
+  corners: number[],
+  parts: number[],
+  [x, y]: number[],
+  at: Projection,
+  size: number,
+): number {
   const sum = parts[0] + parts[1] + parts[2];
   const { sourceDistance, halfWidth } = at;
   let [depth, inverse] = [0, 0];

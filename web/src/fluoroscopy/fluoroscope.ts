@@ -66,12 +66,23 @@ export class Fluoroscope {
   }
 
   private build(): void {
-    const close = make("button", { type: "button", id: "fluoroscopy-close", title: "Back to the 3D view (X)" }, "Close");
+    const close = make(
+      "button",
+      { type: "button", id: "fluoroscopy-close", title: "Back to the 3D view (X)" },
+      "Close",
+    );
     close.onclick = () => this.parts.close();
     const heading = make("header", {}, make("h2", {}, "Fluoroscopy"), close);
     const sniff = this.sniff === undefined ? [] : [this.sniff.element];
     const rest = [...pictureControls(this.settings), this.density, explanationSection(this.absorbers.open)];
-    const controls = make("div", { className: "fluoroscopy-controls", tabIndex: 0 }, heading, this.note(), ...sniff, ...rest);
+    const controls = make(
+      "div",
+      { className: "fluoroscopy-controls", tabIndex: 0 },
+      heading,
+      this.note(),
+      ...sniff,
+      ...rest,
+    );
     controls.role = "group";
     controls.ariaLabel = "Controls of the fluoroscopy";
     const picture = make("div", { className: "fluoroscopy-frame" }, this.canvas);
@@ -116,6 +127,7 @@ export class Fluoroscope {
     if (sums === undefined) this.gpu?.show(tone);
     else paintSums(this.canvas, sums, tone);
     const { diaphragm } = this;
+    this.overlay.classList.toggle("dark-bones", darkBones.value);
     const result = this.sniff?.result;
     drawMarks(this.overlay, { arm: arm.value, projection, diaphragm, frame, domes: domes.value, result });
     this.updateTexts();

@@ -21,7 +21,9 @@ export interface Tone {
  * Returns how this context can add floating-point numbers of many surfaces: 32 bits need EXT_color_buffer_float and
  * EXT_float_blend; 16 bits one of two extensions. Undefined if it can do neither.
  */
-export function sumFormat(gl: Pick<WebGL2RenderingContext, "getExtension" | "R32F" | "RGBA16F">): SumFormat | undefined {
+export function sumFormat(
+  gl: Pick<WebGL2RenderingContext, "getExtension" | "R32F" | "RGBA16F">,
+): SumFormat | undefined {
   const full = gl.getExtension("EXT_color_buffer_float");
   if (full !== null && gl.getExtension("EXT_float_blend") !== null) return { internal: gl.R32F, words: "full" };
   const half = full !== null || gl.getExtension("EXT_color_buffer_half_float") !== null;
@@ -174,7 +176,11 @@ export class GpuProjection {
 
 function program(gl: WebGL2RenderingContext, vertex: string, fragment: string): WebGLProgram {
   const made = gl.createProgram();
-  for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]] as const) { // prettier-ignore
+  for (const [type, source] of [
+    [gl.VERTEX_SHADER, vertex],
+    [gl.FRAGMENT_SHADER, fragment],
+  ] as const) {
+    // prettier-ignore
     const shader = gl.createShader(type)!;
     gl.shaderSource(shader, source);
     gl.compileShader(shader);

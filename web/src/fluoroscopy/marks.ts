@@ -35,7 +35,11 @@ export function drawMarks(overlay: SVGSVGElement, { arm, projection, diaphragm, 
   if (!domes || diaphragm === undefined) return;
   const positions = diaphragm.placement === Placement.STREAMED ? positionsOf(diaphragm, frame) : diaphragm.rest;
   const mirrored = isMirrored(arm);
-  for (const [name, side] of [["right", -1], ["left", 1]] as const) { // prettier-ignore
+  for (const [name, side] of [
+    ["right", -1],
+    ["left", 1],
+  ] as const) {
+    // prettier-ignore
     const now = summit(positions, side);
     const [x, y] = pictureOf(now, projection, mirrored);
     overlay.append(mark(x, y, domeColors[name], false));

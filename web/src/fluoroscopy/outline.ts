@@ -58,7 +58,10 @@ function extentsAt(bones: Float32Array[], first: number, count: number): (Extent
 
 /** Gives rings without bones the extents of the nearest ring that has some. */
 function filled(rings: (Extents | undefined)[]): Extents[] | undefined {
-  const [begin, end] = [rings.findIndex((each) => each !== undefined), rings.findLastIndex((each) => each !== undefined)];
+  const [begin, end] = [
+    rings.findIndex((each) => each !== undefined),
+    rings.findLastIndex((each) => each !== undefined),
+  ];
   if (begin < 0) return undefined;
   let last = rings[begin]!;
   return rings.map((each, k) => (last = k > end ? rings[end]! : (each ?? last)));
@@ -78,10 +81,7 @@ function placeRing(vertices: Float32Array, k: number, z: number, [left, right, f
   for (let i = 0; i < around; i++) {
     const angle = (2 * Math.PI * i) / around;
     const [c, s] = [Math.cos(angle), Math.sin(angle)];
-    vertices.set(
-      [(left + right) / 2 + a * rounded(c), (front + back) / 2 + b * rounded(s), z],
-      3 * (k * around + i),
-    );
+    vertices.set([(left + right) / 2 + a * rounded(c), (front + back) / 2 + b * rounded(s), z], 3 * (k * around + i));
   }
 }
 

@@ -19,7 +19,11 @@ export interface SniffActions {
 export class SniffPanel {
   readonly element = make("div", { className: "sniff" });
   private readonly run = make("button", { type: "button", id: "sniff-run", className: "primary" }, "Sniff test");
-  private readonly back = make("button", { type: "button", id: "sniff-back", hidden: true }, "Back to the breath before");
+  private readonly back = make(
+    "button",
+    { type: "button", id: "sniff-back", hidden: true },
+    "Back to the breath before",
+  );
   private readonly words = make("p", { id: "sniff-result", role: "status" });
   private readonly plot = make("div", { className: "sniff-figure", hidden: true });
   private test: SniffTest | undefined;
@@ -74,7 +78,10 @@ export class SniffPanel {
       line.append(svg("line", { x1: 0, x2: 18, y1: 4, y2: 4, stroke: domeColors[side], "stroke-width": 3 }));
       return make("span", {}, line, `${side} dome`);
     });
-    this.plot.replaceChildren(sniffPlot(this.test.heights, this.result), make("div", { className: "sniff-keys" }, ...key));
+    this.plot.replaceChildren(
+      sniffPlot(this.test.heights, this.result),
+      make("div", { className: "sniff-keys" }, ...key),
+    );
   }
 }
 

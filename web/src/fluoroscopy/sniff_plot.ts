@@ -27,7 +27,11 @@ export function sniffPlot(heights: DomeHeights[], result: SniffResult | undefine
     plot.append(svg("text", { x: axis - 5, y: y(tick) + 4, "text-anchor": "end" }, String(tick)));
   }
   plot.append(svg("text", { x: 0, y: 12 }, "mm"), svg("text", { x: width, y: height - 4, "text-anchor": "end" }, `last ${span} s`)); // prettier-ignore
-  for (const [values, color] of [[right, domeColors.right], [left, domeColors.left]] as const) { // prettier-ignore
+  for (const [values, color] of [
+    [right, domeColors.right],
+    [left, domeColors.left],
+  ] as const) {
+    // prettier-ignore
     const points = values.map((value, i) => `${x(shown[i].time).toFixed(1)},${y(value).toFixed(1)}`).join(" ");
     plot.append(svg("polyline", { points, stroke: color, fill: "none", "stroke-width": 2 }));
   }

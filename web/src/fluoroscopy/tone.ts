@@ -3,7 +3,7 @@ import type { Tone } from "./gpu_projection";
 /** Line integrals below this are those of rays beside the trunk. */
 const beside = 0.4;
 /** Parts of the picture's rays through the trunk that may be black and white. */
-const [darkest, brightest] = [0.01, 0.985];
+const [darkest, brightest] = [0.06, 0.98];
 /** A window has at least this width, so that a picture of one thickness is one grey. */
 const narrowest = 0.2;
 

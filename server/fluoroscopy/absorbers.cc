@@ -1,0 +1,109 @@
+#include "server/fluoroscopy/absorbers.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "server/fluoroscopy/attenuation.h"
+#include "server/fluoroscopy/outline.h"
+#include "server/mechanics/skinning/body_points.h"
+#include "server/mesh/normals.h"
+#include "server/mesh/topology.h"
+
+namespace phrenic::fluoroscopy {
+namespace {
+
+constexpr double kShell = 0.0012;  // thickness of the cortical shell of a rib [m]
+
+class Collector {
+ public:
+  Collector(const Model& model, const State& state) : model_(model), state_(state) {}
+
+  void Add(int b) {
+    const BodyModel& body = model_.bodies[b];
+    const std::string& layer = body.layer.empty() ? body.name : body.layer;
+    const std::optional<Tissue> tissue = TissueOf(body.name, layer);
+    if (!tissue || body.mesh.triangles.size() == 0) return;
+    Points placed(3, body.mesh.vertices.cols());
+    PlaceBody(model_, state_, b, placed);
+    if (IsBone(tissue)) {
+      bones_.push_back(placed);
+      Extend(bone_box_, body.mesh.vertices);
+    }
+    if (*tissue == Tissue::kLung) Extend(lung_box_, body.mesh.vertices);
+    if (!IsClosedSurface(body.mesh.vertices, body.mesh.triangles)) {
+      found_.open.push_back(body.name);
+    } else {
+      AddClosed(body, *tissue, placed);
+    }
+  }
+
+  Absorbers Finish() {
+    const Eigen::AlignedBox3d& middle = lung_box_.isEmpty() ? bone_box_ : lung_box_;
+    if (!middle.isEmpty()) found_.isocentre = middle.center();
+    if (bones_.empty()) return found_;
+    const Mesh trunk = TrunkOutline(bones_, bone_box_.min().z(), bone_box_.max().z());
+    found_.all.push_back({"trunk", trunk.vertices, trunk.triangles, CoefficientOf(Tissue::kWall)});
+    return found_;
+  }
+
+ private:
+  static void Extend(Eigen::AlignedBox3d& box, const Points& vertices) {
+    for (const auto& vertex : vertices.colwise()) box.extend(Eigen::Vector3d(vertex));
+  }
+
+  void AddClosed(const BodyModel& body, Tissue tissue, const Points& placed) {
+    const double outside = CoefficientOf(Tissue::kWall);
+    const Triangles& triangles = body.mesh.triangles;
+    if (tissue == Tissue::kLung) {
+      const double rest = SignedVolume(body.mesh.vertices, triangles), now = SignedVolume(placed, triangles);
+      found_.lungs.push_back({body.name, LungDensity(rest, now)});
+      found_.all.push_back({body.name, placed, triangles, LungCoefficient(rest, now) - outside});
+    } else if (tissue == Tissue::kRib) {
+      const double cortical = CoefficientOf(Tissue::kCortical), marrow = CoefficientOf(Tissue::kMarrow);
+      found_.all.push_back({body.name, placed, triangles, cortical - outside});
+      if (body.skin >= 0 || body.first_vertex >= 0) return;  // a rib that bends is one solid
+      const Points inside = placed - kShell * VertexNormals(placed, triangles);
+      found_.all.push_back({body.name, inside, triangles, marrow - cortical});
+    } else {
+      found_.all.push_back({body.name, placed, triangles, CoefficientOf(tissue) - outside});
+    }
+  }
+
+  const Model& model_;
+  const State& state_;
+  Absorbers found_;
+  std::vector<Points> bones_;
+  Eigen::AlignedBox3d bone_box_, lung_box_;  // at rest
+};
+
+}  // namespace
+
+bool IsClosedSurface(const Points& vertices, const Triangles& triangles) {
+  std::map<std::array<double, 3>, int> places;
+  std::vector<int> welded;
+  for (const auto& x : vertices.colwise()) {
+    welded.push_back(places.emplace(std::array{x[0], x[1], x[2]}, static_cast<int>(places.size())).first->second);
+  }
+  std::map<std::pair<int, int>, int> balance;
+  for (const auto& triangle : triangles.colwise()) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = welded[triangle[k]], b = welded[triangle[(k + 1) % 3]];
+      if (a != b) balance[std::minmax(a, b)] += a < b ? 1 : -1;
+    }
+  }
+  return triangles.size() > 0 &&
+         std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
+}
+
+absl::StatusOr<Absorbers> AbsorbersAt(const Model& model, const State& state) {
+  Collector collector(model, state);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) collector.Add(b);
+  Absorbers found = collector.Finish();
+  if (!found.all.empty()) return found;
+  return absl::FailedPreconditionError(
+      "no body of the scene has a tissue that absorbs X-rays: names or layers such as rib, t8, lung or heart tell it");
+}
+
+}  // namespace phrenic::fluoroscopy
