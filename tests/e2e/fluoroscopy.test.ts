@@ -193,9 +193,9 @@ test("ASniffOfARightPalsyIsParadoxicalInWords", async () => {
     const { sessions } = JSON.parse(await server.phrenic("sessions", "-o", "json"));
     return sessions.find(({ id }: { id: string }) => id === "palsy").parameters;
   };
-  expect(await parameters()).toMatchObject({ breathLength: 6, rightActivation: 0 });
+  expect(await parameters()).toMatchObject({ breath_length: 6, right_activation: 0 });
   await page.click("#sniff-back");
-  await expect.poll(async () => (await parameters()).breathLength).toBe(4);
+  await expect.poll(async () => (await parameters()).breath_length).toBe(4);
   expect(student.consoleErrors).toEqual([]);
   await student.close();
 });

@@ -18,13 +18,15 @@ test("ASniffIsMeasuredFromItsOnsetOnEachSide", () => {
   const { test: done, end } = sniff(-0.03, 0.008);
   expect(end).toBeLessThan(7);
   expect(end).toBeGreaterThan(6.4);
-  expect(done.result?.onset).toBeCloseTo(6, 1);
+  expect(done.result?.onset).toBeCloseTo(18, 1);
+  expect(done.result?.sniffs).toBe(3);
+  expect(done.result?.gap).toBeCloseTo(0.03, 6);
   expect(done.result?.right).toBeCloseTo(-0.03, 3);
   expect(done.result?.left).toBeCloseTo(0.008, 3);
 });
 
 test("TheSniffInWhichTheTestBeginsDoesNotCount", () => {
-  expect(sniff(-0.03, -0.03, 5.5).test.result?.onset).toBeCloseTo(12, 1);
+  expect(sniff(-0.03, -0.03, 6.2).test.result?.sniffs).toBe(2);
 });
 
 test("ARestartedRunStartsTheTestAgain", () => {
@@ -34,14 +36,28 @@ test("ARestartedRunStartsTheTestAgain", () => {
   expect(done.heights.length).toBe(1);
 });
 
+test("FramesOfASlowMachineCountTheMostOfSeveralSniffs", () => {
+  const slow = new SniffTest();
+  const moments = [4, 5.9, 6.1, 6.3, 8, 11.9, 12.25, 12.4, 14, 17.9, 18.1, 18.2, 19];
+  for (const time of moments) {
+    const breath = time % 6 < 0.5 ? Math.sin((Math.PI * (time % 6)) / 0.5) : 0;
+    slow.receive({ time, breath, right: 0.02 * breath, left: -0.03 * breath });
+  }
+  expect(slow.result?.right).toBeCloseTo(0.02, 6);
+  expect(sniffWords(slow.result!)).toContain("the most of 3 sniffs");
+  expect(sniffWords(slow.result!)).toMatch(/Frames are \d\.\d\d s apart here/);
+});
+
+const wordsOf = (moved: { right: number; left: number }) => sniffWords({ ...moved, sniffs: 1, gap: 0.02 });
+
 test("TheWordsFollowTheNumbers", () => {
-  expect(sniffWords({ right: -0.0312, left: -0.0268 })).toMatch(/^Right dome 31 mm down, left dome 27 mm down\. Both domes fall, as in health/); // prettier-ignore
-  const palsy = sniffWords({ right: 0.0081, left: -0.03 });
+  expect(wordsOf({ right: -0.0312, left: -0.0268 })).toMatch(/^Right dome 31 mm down, left dome 27 mm down\. Both domes fall, as in health/); // prettier-ignore
+  const palsy = wordsOf({ right: 0.0081, left: -0.03 });
   expect(palsy).toContain("Right dome 8 mm up, left dome 30 mm down.");
   expect(palsy).toContain("The right dome rises while the left one falls: paradoxical");
   expect(palsy).toContain("Below 20 mm");
-  expect(sniffWords({ right: 0.025, left: -0.03 })).not.toContain("Below 20 mm");
-  expect(sniffWords({ right: 0.01, left: 0.012 })).toContain("Both domes rise: paradoxical on both sides.");
-  expect(sniffWords({ right: -0.03, left: -0.012 })).toContain("The left dome falls by less than 16 mm");
-  expect(sniffWords({ right: -0.001, left: 0.0001 })).toContain("reduced, not paradoxical");
+  expect(wordsOf({ right: 0.025, left: -0.03 })).not.toContain("Below 20 mm");
+  expect(wordsOf({ right: 0.01, left: 0.012 })).toContain("Both domes rise: paradoxical on both sides.");
+  expect(wordsOf({ right: -0.03, left: -0.012 })).toContain("The left dome falls by less than 16 mm");
+  expect(wordsOf({ right: -0.001, left: 0.0001 })).toContain("reduced, not paradoxical");
 });

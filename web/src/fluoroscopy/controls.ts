@@ -16,10 +16,10 @@ export interface Settings {
 
 /** Distances from source to detector [m]; undefined for parallel rays. */
 const distances: [number | undefined, string][] = [
-  [1.8, "Cone, 1.8 m: chest stand"],
-  [1.2, "Cone, 1.2 m"],
-  [1, "Cone, 1 m: C-arm"],
-  [undefined, "Parallel"],
+  [1.8, "1.8 m, chest stand"],
+  [1.2, "1.2 m"],
+  [1, "1 m, C-arm"],
+  [undefined, "parallel"],
 ];
 
 /** Returns the controls of the picture: projection, rays and grey. */
@@ -63,7 +63,7 @@ function rays(arm: Signal<CArm>): HTMLElement {
     arm.set({ ...arm.value, sourceToDetector: chosen?.[0] });
   };
   arm.subscribe(({ sourceToDetector }) => (list.value = String(sourceToDetector)));
-  return labelledRow(list.id, "Rays", list);
+  return labelledRow(list.id, "Source to detector", list);
 }
 
 /** Centre and width of the window, as radiologists set grey, in powers of e of the transmitted intensity. */

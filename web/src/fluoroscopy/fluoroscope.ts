@@ -194,7 +194,8 @@ export class Fluoroscope {
   private updateTexts(): void {
     if (performance.now() - this.texts < textInterval) return;
     this.texts = performance.now();
-    const sides = this.absorbers.lungs.map(({ name, density }) => `${name.replace("-", " ")} ${density.toFixed(3)}`);
+    const words = (name: string) => name.replace(/^lung-(right|left)$/, "$1 lung");
+    const sides = this.absorbers.lungs.map(({ name, density }) => `${words(name)} ${density.toFixed(3)}`);
     this.density.textContent = sides.length === 0 ? "" : `Density now [g/cm³]: ${sides.join(", ")}.`;
     this.sniff?.draw();
   }

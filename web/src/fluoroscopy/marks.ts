@@ -26,9 +26,12 @@ export interface Marked {
 export function drawMarks(overlay: SVGSVGElement, { arm, projection, diaphragm, frame, domes, result }: Marked): void {
   const [left, right] = sideLetters(arm);
   const centimetres = 0.05 / projection.halfWidth;
+  const pixel = 2 / Math.max(1, overlay.clientWidth);
+  const [large, small] = [Math.max(0.11, 18 * pixel), Math.max(0.06, 13 * pixel)];
+  overlay.setAttribute("font-size", String(small));
   overlay.replaceChildren(
-    svg("text", { x: -0.95, y: -0.86, class: "side" }, left),
-    svg("text", { x: 0.95, y: -0.86, class: "side", "text-anchor": "end" }, right),
+    svg("text", { x: -0.95, y: -0.86, class: "side", "font-size": large }, left),
+    svg("text", { x: 0.95, y: -0.86, class: "side", "font-size": large, "text-anchor": "end" }, right),
     svg("line", { x1: 0.94 - centimetres, x2: 0.94, y1: 0.95, y2: 0.95, class: "scale-line" }),
     svg("text", { x: 0.94, y: 0.91, class: "scale-words", "text-anchor": "end" }, "5 cm"),
   );
@@ -46,7 +49,7 @@ export function drawMarks(overlay: SVGSVGElement, { arm, projection, diaphragm, 
     if (result === undefined) continue;
     const rest = summit(diaphragm.rest, side);
     const [x0, y0] = pictureOf([rest[0], rest[1], rest[2] + result.before[name]], projection, mirrored);
-    overlay.append(mark(x0, y0, domeColors[name], true), excursion(x0, y0, 1000 * result[name], domeColors[name]));
+    overlay.append(mark(x0, y0, domeColors[name], true), excursion(x0, y0, 1000 * result[name], name));
   }
 }
 
@@ -56,9 +59,11 @@ function mark(x: number, y: number, color: string, dashed: boolean): SVGLineElem
   return svg("line", { ...ends, stroke: color, "stroke-width": 0.008, "stroke-dasharray": dashes });
 }
 
-function excursion(x: number, y: number, mm: number, color: string): SVGTextElement {
+/** Words above a mark, which run away from the middle of the picture. */
+function excursion(x: number, y: number, mm: number, name: "right" | "left"): SVGTextElement {
   const words = `${Math.abs(mm).toFixed(0)} mm ${mm < 0 ? "↓" : "↑"}`;
-  return svg("text", { x, y: -y - 0.04, fill: color, class: "excursion", "text-anchor": "middle" }, words);
+  const anchor = x < 0 ? "end" : "start";
+  return svg("text", { x, y: -y - 0.04, fill: domeColors[name], class: "excursion", "text-anchor": anchor }, words);
 }
 
 /** Returns the highest vertex on one side, -1 for the right [m]. */

@@ -6,12 +6,17 @@ export interface DomeHeights {
   left: number;
 }
 
-/** What a sniff moves: the change of each dome's height [m], negative downwards, and their heights before it. */
+/** What sniffs move: the change of each dome's height [m], negative downwards, and their heights before the last one. */
 export interface SniffResult {
+  /** Time of the last sniff [s]. */
   onset: number;
+  /** The largest changes of all sniffs: frames of a slow machine miss peaks. */
   right: number;
   left: number;
   before: DomeHeights;
+  sniffs: number;
+  /** Largest time between two frames of a sniff, in the one with the most frames [s]. */
+  gap: number;
 }
 
 /** Simulated time before the first sniff that counts [s]: the breath before it must have ended. */
@@ -20,17 +25,18 @@ const settling = 1;
 const quiet = 0.02;
 /** Longest time that is measured from the onset [s]. */
 const longest = 2;
-/** Time that is plotted [s]. */
+/** Time that is plotted [s], and sniffs that are measured. */
 const kept = 10;
+const mostSniffs = 3;
 
-/** Waits for a sniff and measures how far it moves each dome: by the largest change of height while the breath lasts. */
+/** Waits for sniffs and measures how far they move each dome: by the largest change of height while the breath lasts. */
 export class SniffTest {
   readonly heights: DomeHeights[] = [];
   result: SniffResult | undefined;
   private start: number | undefined;
   private before: DomeHeights | undefined;
 
-  /** Receives every frame, in the order of time. Starts again if time goes back. Returns true once, when the result is known. */
+  /** Receives every frame, in the order of time. Starts again if time goes back. Returns true when the result changes. */
   receive(now: DomeHeights): boolean {
     const last = this.heights.at(-1);
     if (last !== undefined && now.time <= last.time) {
@@ -41,24 +47,40 @@ export class SniffTest {
     this.heights.push(now);
     while (this.heights[0].time < now.time - kept) this.heights.shift();
     this.start ??= now.time;
-    if (this.result !== undefined || now.time - this.start < settling) return false;
+    if (now.time - this.start < settling || this.result?.sniffs === mostSniffs) return false;
     if (this.before === undefined) {
       if (last !== undefined && last.breath <= quiet && now.breath > quiet) this.before = last;
       return false;
     }
     const since = now.time - this.before.time;
     if (since < longest && (now.breath > quiet || since < 0.1)) return false;
-    this.result = this.measure(this.before);
+    this.result = joined(this.result, this.measure(this.before));
+    this.before = undefined;
     return true;
   }
 
   private measure(before: DomeHeights): SniffResult {
     const sniff = this.heights.filter(({ time }) => time >= before.time);
-    const largest = (side: "right" | "left") =>
-      sniff.reduce((most, each) => (Math.abs(each[side] - before[side]) > Math.abs(most) ? each[side] - before[side] : most), 0); // prettier-ignore
-    return { onset: before.time, right: largest("right"), left: largest("left"), before };
+    const moves = (side: "right" | "left") => sniff.map((each) => each[side] - before[side]);
+    const gaps = sniff.slice(1).map(({ time }, i) => time - sniff[i].time);
+    const [right, left] = [largestOf(moves("right")), largestOf(moves("left"))];
+    return { onset: before.time, right, left, before, sniffs: 1, gap: Math.max(0, ...gaps) };
   }
 }
+
+/** Returns the number with the largest magnitude. */
+function largestOf(all: number[]): number {
+  return all.reduce((most, each) => (Math.abs(each) > Math.abs(most) ? each : most), 0);
+}
+
+function joined(known: SniffResult | undefined, next: SniffResult): SniffResult {
+  if (known === undefined) return next;
+  const [right, left] = [largestOf([known.right, next.right]), largestOf([known.left, next.left])];
+  return { ...next, right, left, sniffs: known.sniffs + 1, gap: Math.min(known.gap, next.gap) };
+}
+
+/** Frames further apart than this may miss some of a peak [s]. */
+const sparse = 0.06;
 
 /** A dome that rises by more than this moves paradoxically [mm]. */
 const paradoxical = 2;
@@ -72,10 +94,12 @@ export function domeWords(side: string, change: number): string {
 }
 
 /** Returns the result in words: both excursions, and what they mean by published limits. */
-export function sniffWords({ right, left }: Pick<SniffResult, "right" | "left">): string {
+export function sniffWords({ right, left, sniffs, gap }: Omit<SniffResult, "onset" | "before">): string {
   const sides = [["right", 1000 * right], ["left", 1000 * left]] as const; // prettier-ignore
   const numbers = sides.map(([side, mm]) => domeWords(side, mm / 1000)).join(", ");
-  return `${numbers.charAt(0).toUpperCase()}${numbers.slice(1)}. ${meaning(sides)}`;
+  const of = sniffs > 1 ? ` (the most of ${sniffs} sniffs)` : "";
+  const missed = gap > sparse ? ` Frames are ${gap.toFixed(2)} s apart here, so that peaks may be larger.` : "";
+  return `${numbers.charAt(0).toUpperCase()}${numbers.slice(1)}${of}. ${meaning(sides)}${missed}`;
 }
 
 function meaning(sides: readonly (readonly [side: string, mm: number])[]): string {

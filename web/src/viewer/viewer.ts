@@ -411,9 +411,10 @@ export class Viewer {
 
   private draw(): void {
     this.dirty = false;
+    const hidden = this.isCovered && !this.filming;
     const frame = this.host.frame();
     if (frame !== undefined && frame !== this.shown) {
-      for (const view of this.views) if (view.group.visible && !this.isCovered) view.update(frame);
+      for (const view of this.views) if (view.group.visible && !hidden) view.update(frame);
       this.host.beforeDraw?.(frame);
       this.dirty = false;
     }
@@ -423,7 +424,7 @@ export class Viewer {
     const orientation = this.rig.orientation();
     this.markers.scale(markerSize / orientation.pixelsPerMetre);
     this.lights.follow(this.rig.sceneCenter, extent);
-    if (!this.isCovered) this.renderer.render(this.scene, this.rig.camera);
+    if (!hidden) this.renderer.render(this.scene, this.rig.camera);
     this.drawn++;
     if (frame !== undefined && this.firstDrawTime < 0) this.firstDrawTime = performance.now();
     if (frame !== undefined && this.unshaded) this.shade();
