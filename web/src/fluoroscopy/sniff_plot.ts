@@ -26,7 +26,7 @@ export function sniffPlot(heights: DomeHeights[], result: SniffResult | undefine
     plot.append(svg("line", { class: tick === 0 ? "zero" : "grid", x1: axis, x2: width, y1: y(tick), y2: y(tick) }));
     plot.append(svg("text", { x: axis - 5, y: y(tick) + 4, "text-anchor": "end" }, String(tick)));
   }
-  plot.append(svg("text", { x: 0, y: 12 }, "mm"), svg("text", { x: width, y: height - 4, "text-anchor": "end" }, `last ${span} s`)); // prettier-ignore
+  plot.append(svg("text", { x: width, y: height - 4, "text-anchor": "end" }, `height [mm], last ${span} s`)); // prettier-ignore
   for (const [values, color] of [
     [right, domeColors.right],
     [left, domeColors.left],
