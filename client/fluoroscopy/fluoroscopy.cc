@@ -28,8 +28,9 @@ struct FluoroscopyOptions {
   SceneOptions scene;
   std::string preset, view = "pa", out, data_dir;
   std::vector<std::string> settings;
-  double at = 0;                       // time of the run [s]
-  std::optional<double> lao;           // in place of the view's [degrees]
+  double at = 0;                    // time of the run [s]
+  std::optional<double> low, high;  // line integrals that are black and white in a .png; unset: chosen by the picture
+  std::optional<double> lao;        // in place of the view's [degrees]
   double cranial = 0, distance = 1.8;  // [degrees], [m]
   int size = 768;
   bool dark_bones = false;
@@ -93,7 +94,13 @@ absl::Status WritePicture(const FluoroscopyOptions& options, const fluoroscopy::
     if (absl::EndsWith(options.out, ".gz")) bytes = imaging::Deflate(bytes);
   } else {
     const fluoroscopy::Picture shown = mirrored ? fluoroscopy::Picture(sums.rowwise().reverse()) : sums;
-    bytes = fluoroscopy::WritePng(shown, fluoroscopy::WindowOf(sums), options.dark_bones);
+    fluoroscopy::Window window = fluoroscopy::WindowOf(sums);
+    window = {options.low.value_or(window.low), options.high.value_or(window.high)};
+    if (!(window.low < window.high)) {
+      return absl::InvalidArgumentError(
+          absl::StrFormat("the window is %g to %g: --high must be above --low", window.low, window.high));
+    }
+    bytes = fluoroscopy::WritePng(shown, window, options.dark_bones);
   }
   return WriteWhole(options.out, bytes);
 }
@@ -163,6 +170,12 @@ CommandFunction SetUpFluoroscopy(CLI::App& command) {
   command.add_option("--size", options->size, "pixels each way, of 42 cm")
       ->check(NumberIn(16, 4096))
       ->capture_default_str();
+  for (const auto& [flag, value, grey] :
+       {std::tuple("--low", &options->low, "black"), std::tuple("--high", &options->high, "white")}) {
+    command
+        .add_option(flag, *value, std::string("line integral that is ") + grey + " in a .png (chosen by the picture)")
+        ->check(NumberIn(-100.0, 100.0));
+  }
   command.add_flag("--dark-bones", options->dark_bones, "dark where little passes, as on a fluorescent screen");
   AddDataFolder(command, options->data_dir);
   return Bind(&Fluoroscopy, options);

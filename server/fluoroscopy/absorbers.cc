@@ -16,15 +16,24 @@ namespace {
 
 constexpr double kShell = 0.0012;  // thickness of the cortical shell of a rib [m]
 
+// The tissue of a body; nullopt for one without a surface.
+std::optional<Tissue> TissueOfBody(const BodyModel& body) {
+  if (body.mesh.triangles.size() == 0) return std::nullopt;
+  return TissueOf(body.name, body.layer.empty() ? body.name : body.layer);
+}
+
 class Collector {
  public:
-  Collector(const Model& model, const State& state) : model_(model), state_(state) {}
+  Collector(const Model& model, const State& state) : model_(model), state_(state) {
+    for (const BodyModel& body : model.bodies) {
+      if (IsBone(TissueOfBody(body))) outside_ = CoefficientOf(Tissue::kWall);
+    }
+  }
 
   void Add(int b) {
     const BodyModel& body = model_.bodies[b];
-    const std::string& layer = body.layer.empty() ? body.name : body.layer;
-    const std::optional<Tissue> tissue = TissueOf(body.name, layer);
-    if (!tissue || body.mesh.triangles.size() == 0) return;
+    const std::optional<Tissue> tissue = TissueOfBody(body);
+    if (!tissue) return;
     Points placed(3, body.mesh.vertices.cols());
     PlaceBody(model_, state_, b, placed);
     if (IsBone(tissue)) {
@@ -54,25 +63,25 @@ class Collector {
   }
 
   void AddClosed(const BodyModel& body, Tissue tissue, const Points& placed) {
-    const double outside = CoefficientOf(Tissue::kWall);
     const Triangles& triangles = body.mesh.triangles;
     if (tissue == Tissue::kLung) {
       const double rest = SignedVolume(body.mesh.vertices, triangles), now = SignedVolume(placed, triangles);
       found_.lungs.push_back({body.name, LungDensity(rest, now)});
-      found_.all.push_back({body.name, placed, triangles, LungCoefficient(rest, now) - outside});
+      found_.all.push_back({body.name, placed, triangles, LungCoefficient(rest, now) - outside_});
     } else if (tissue == Tissue::kRib) {
       const double cortical = CoefficientOf(Tissue::kCortical), marrow = CoefficientOf(Tissue::kMarrow);
-      found_.all.push_back({body.name, placed, triangles, cortical - outside});
+      found_.all.push_back({body.name, placed, triangles, cortical - outside_});
       if (body.skin >= 0 || body.first_vertex >= 0) return;  // a rib that bends is one solid
       const Points inside = placed - kShell * VertexNormals(placed, triangles);
       found_.all.push_back({body.name, inside, triangles, marrow - cortical});
     } else {
-      found_.all.push_back({body.name, placed, triangles, CoefficientOf(tissue) - outside});
+      found_.all.push_back({body.name, placed, triangles, CoefficientOf(tissue) - outside_});
     }
   }
 
   const Model& model_;
   const State& state_;
+  double outside_ = 0;  // coefficient of what is around the bodies [1/m]: the trunk's tissue, or nothing without bones
   Absorbers found_;
   std::vector<Points> bones_;
   Eigen::AlignedBox3d bone_box_, lung_box_;  // at rest

@@ -54,6 +54,14 @@ test("AnInflatedLungIsLighterInTheScene", () => {
   expect(absorbers.lungs[0].density * volume).toBeCloseTo(0.3 * enclosedVolume(lung.rest, lung.triangles), 8);
 });
 
+test("ALungWithoutBonesIsInNothing", () => {
+  const lung = body("lung-left", 0.08, Placement.STREAMED);
+  const absorbers = new Absorbers([lung]);
+  absorbers.update({ positions: lung.rest, poses: new Float32Array() });
+  expect(absorbers.all.map(({ name }) => name)).toEqual(["lung-left"]);
+  expect(absorbers.all[0].weight).toBeCloseTo(5.8, 1);
+});
+
 test("AnOpenSurfaceIsLeftOutAndNamed", () => {
   const lung = body("lung-left", 0.08, Placement.STREAMED);
   const absorbers = new Absorbers([{ ...lung, triangles: lung.triangles.slice(3) }]);

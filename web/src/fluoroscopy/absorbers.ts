@@ -39,12 +39,15 @@ export class Absorbers {
   /** The middle of the lungs at rest, or of the bones without lungs [m]. */
   readonly isocentre: [number, number, number];
   private readonly parts: { body: Body; absorber: Absorber; restVolume: number; lung: LungNow | undefined }[] = [];
-  private readonly bones: Body[] = [];
+  private readonly bones: Body[];
+  /** Coefficient of what is around the bodies [1/m]: tissue of the trunk, or nothing in scenes without bones. */
+  private readonly outside: number;
   private readonly outline: Absorber;
   private readonly heights: [low: number, high: number];
 
   constructor(bodies: Body[]) {
-    const outside = materials.wall.coefficient;
+    this.bones = bodies.filter((body) => body.triangles.length > 0 && isBone(absorptionOf(body)));
+    const outside = (this.outside = this.bones.length > 0 ? materials.wall.coefficient : 0);
     this.outline = {
       name: "trunk",
       vertices: none,
@@ -56,7 +59,6 @@ export class Absorbers {
     for (const body of bodies.filter(({ triangles }) => triangles.length > 0)) {
       const absorption = absorptionOf(body);
       if (absorption === undefined) continue;
-      if (isBone(absorption)) this.bones.push(body);
       if (!isClosed(body.rest, body.triangles)) this.open.push(body.name);
       else if (absorption === "rib") this.addRib(body);
       else if (absorption === "lung") this.add(body, 0, { name: body.name, density: 0 });
@@ -79,7 +81,7 @@ export class Absorbers {
   /** A rib is marrow in a shell of cortical bone. */
   private addRib(body: Body): void {
     const [cortical, marrow] = [materials.cortical.coefficient, materials.marrow.coefficient];
-    this.add(body, cortical - materials.wall.coefficient);
+    this.add(body, cortical - this.outside);
     if (body.placement !== Placement.STREAMED) this.add({ ...body, rest: inset(body, shell) }, marrow - cortical);
   }
 
@@ -91,7 +93,7 @@ export class Absorbers {
       if (lung === undefined) continue;
       const volume = enclosedVolume(absorber.vertices, body.triangles);
       lung.density = lungDensity(restVolume, volume);
-      absorber.weight = lungCoefficient(restVolume, volume) - materials.wall.coefficient;
+      absorber.weight = lungCoefficient(restVolume, volume) - this.outside;
     }
     if (this.bones.length === 0) return;
     const bones = this.bones.map((body) => worldPositions(body, frame));

@@ -2,9 +2,9 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { ball } from "../web/fluoroscopy/ball";
-import { endAll, startAll, ViewerPage } from "./browser";
-import { outFolder, type Server } from "./server";
+import { ball } from "../../web/fluoroscopy/ball";
+import { endAll, startAll, ViewerPage } from "../browser";
+import { outFolder, type Server } from "../server";
 
 let server: Server;
 let browser: Browser;
