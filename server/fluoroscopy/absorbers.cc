@@ -1,11 +1,10 @@
 #include "server/fluoroscopy/absorbers.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <array>
-#include <map>
+#include <optional>
 
 #include "server/fluoroscopy/attenuation.h"
+#include "server/fluoroscopy/closing.h"
 #include "server/fluoroscopy/outline.h"
 #include "server/mechanics/skinning/body_points.h"
 #include "server/mesh/normals.h"
@@ -41,10 +40,11 @@ class Collector {
       Extend(bone_box_, body.mesh.vertices);
     }
     if (*tissue == Tissue::kLung) Extend(lung_box_, body.mesh.vertices);
-    if (!IsClosedSurface(body.mesh.vertices, body.mesh.triangles)) {
-      found_.open.push_back(body.name);
+    const std::optional<Triangles> triangles = ClosedTriangles(body.mesh.vertices, body.mesh.triangles);
+    if (triangles) {
+      AddClosed(body, *tissue, placed, *triangles);
     } else {
-      AddClosed(body, *tissue, placed);
+      found_.open.push_back(body.name);
     }
   }
 
@@ -62,8 +62,7 @@ class Collector {
     for (const auto& vertex : vertices.colwise()) box.extend(Eigen::Vector3d(vertex));
   }
 
-  void AddClosed(const BodyModel& body, Tissue tissue, const Points& placed) {
-    const Triangles& triangles = body.mesh.triangles;
+  void AddClosed(const BodyModel& body, Tissue tissue, const Points& placed, const Triangles& triangles) {
     if (tissue == Tissue::kLung) {
       const double rest = SignedVolume(body.mesh.vertices, triangles), now = SignedVolume(placed, triangles);
       found_.lungs.push_back({body.name, LungDensity(rest, now)});
@@ -88,23 +87,6 @@ class Collector {
 };
 
 }  // namespace
-
-bool IsClosedSurface(const Points& vertices, const Triangles& triangles) {
-  std::map<std::array<double, 3>, int> places;
-  std::vector<int> welded;
-  for (const auto& x : vertices.colwise()) {
-    welded.push_back(places.emplace(std::array{x[0], x[1], x[2]}, static_cast<int>(places.size())).first->second);
-  }
-  std::map<std::pair<int, int>, int> balance;
-  for (const auto& triangle : triangles.colwise()) {
-    for (int k = 0; k < 3; ++k) {
-      const int a = welded[triangle[k]], b = welded[triangle[(k + 1) % 3]];
-      if (a != b) balance[std::minmax(a, b)] += a < b ? 1 : -1;
-    }
-  }
-  return triangles.size() > 0 &&
-         std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
-}
 
 absl::StatusOr<Absorbers> AbsorbersAt(const Model& model, const State& state) {
   Collector collector(model, state);

@@ -38,10 +38,6 @@ struct Absorbers {
 // has the mean density of ribs, 1.4 g/cm^3. FAILED_PRECONDITION if no body has a tissue that absorbs. Thread-safe.
 absl::StatusOr<Absorbers> AbsorbersAt(const Model& model, const State& state);
 
-// True if the triangles enclose a volume: each edge has as many triangles in one direction as in the other. Vertices at
-// the same place count as one.
-bool IsClosedSurface(const Points& vertices, const Triangles& triangles);
-
 }  // namespace phrenic::fluoroscopy
 
 #endif  // PHRENIC_SERVER_FLUOROSCOPY_ABSORBERS_H_

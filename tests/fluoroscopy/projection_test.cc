@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "server/fluoroscopy/closing.h"
 #include "server/mesh/ellipsoid.h"
 
 namespace phrenic::fluoroscopy {
@@ -97,6 +98,22 @@ TEST(ClosedSurface, LeavesNothingBesideItselfAndNoSeams) {
   const Picture picture = LineIntegrals({box}, ProjectionOf({.source_to_detector = 0}, Eigen::Vector3d::Zero()), kSize);
   for (const double value : picture.reshaped()) EXPECT_TRUE(std::abs(value) < 1e-12 || std::abs(value - 0.1) < 1e-12);
   EXPECT_NEAR(picture.sum() / 0.1, 21 * 21, 1e-9);
+}
+
+// Surfaces of scans lack a few triangles: the gaps are closed, and leave no streaks.
+TEST(ClosedTriangles, CloseSmallGapsAndRefuseSheets) {
+  const Absorber ball = Ball(kRadius, 1);
+  Absorber torn = ball;
+  torn.triangles = ball.triangles.rightCols(ball.triangles.cols() - 7);
+  const auto mended = ClosedTriangles(torn.vertices, torn.triangles);
+  ASSERT_TRUE(mended.has_value());
+  EXPECT_EQ(ClosedTriangles(torn.vertices, *mended)->cols(), mended->cols()) << "nothing is left to close";
+  torn.triangles = *mended;
+  const Projection at = ProjectionOf({20, 10, 1.8}, Eigen::Vector3d::Zero());
+  EXPECT_LT((LineIntegrals({torn}, at, kSize) - LineIntegrals({ball}, at, kSize)).abs().maxCoeff(), 0.001);
+  const Mesh half = EllipsoidSurface(Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(kRadius), 20, true);
+  EXPECT_FALSE(ClosedTriangles(half.vertices, half.triangles).has_value());
+  EXPECT_FALSE(ClosedTriangles(half.vertices, Triangles(3, 0)).has_value());
 }
 
 TEST(CArm, SeesThePatientsLeftOnTheRightAndTheHeadAbove) {

@@ -62,11 +62,14 @@ test("ALungWithoutBonesIsInNothing", () => {
   expect(absorbers.all[0].weight).toBeCloseTo(5.8, 1);
 });
 
-test("AnOpenSurfaceIsLeftOutAndNamed", () => {
+test("ASmallGapIsClosedAndAnOpenSurfaceIsLeftOutAndNamed", () => {
   const lung = body("lung-left", 0.08, Placement.STREAMED);
-  const absorbers = new Absorbers([{ ...lung, triangles: lung.triangles.slice(3) }]);
-  expect(absorbers.open).toEqual(["lung-left"]);
-  expect(absorbers.all).toEqual([]);
+  const torn = new Absorbers([{ ...lung, triangles: lung.triangles.slice(9) }]);
+  expect(torn.open).toEqual([]);
+  expect(isClosed(lung.rest, torn.all[0].triangles)).toBe(true);
+  const half = new Absorbers([{ ...lung, triangles: lung.triangles.slice(lung.triangles.length / 2) }]);
+  expect(half.open).toEqual(["lung-left"]);
+  expect(half.all).toEqual([]);
 });
 
 test("BodiesAbsorbByTheirNames", () => {

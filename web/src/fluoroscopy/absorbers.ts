@@ -1,8 +1,9 @@
 import { Placement } from "../gen/phrenic/v1/frames_pb";
 import { type Body, floatsPerPose, type FrameArrays, positionsOf } from "../geometry/bodies";
-import { enclosedVolume, isClosed } from "../geometry/measuring";
+import { enclosedVolume } from "../geometry/measuring";
 import { computeNormals } from "../geometry/normals";
 import { absorptionOf, isBone, lungCoefficient, lungDensity, materials } from "./attenuation";
+import { closedTriangles } from "./closing";
 import { trunkOutline } from "./outline";
 
 /**
@@ -56,10 +57,12 @@ export class Absorbers {
       pose: undefined,
       moving: true,
     };
-    for (const body of bodies.filter(({ triangles }) => triangles.length > 0)) {
-      const absorption = absorptionOf(body);
+    for (const seen of bodies.filter(({ triangles }) => triangles.length > 0)) {
+      const absorption = absorptionOf(seen);
       if (absorption === undefined) continue;
-      if (!isClosed(body.rest, body.triangles)) this.open.push(body.name);
+      const triangles = closedTriangles(seen.rest, seen.triangles);
+      const body = { ...seen, triangles: triangles ?? seen.triangles };
+      if (triangles === undefined) this.open.push(body.name);
       else if (absorption === "rib") this.addRib(body);
       else if (absorption === "lung") this.add(body, 0, { name: body.name, density: 0 });
       else this.add(body, materials[absorption].coefficient - outside);
