@@ -15,7 +15,7 @@ constexpr int kSize = 96;
 constexpr double kRadius = 0.1;  // [m]
 
 Absorber Ball(double radius, double weight, const Eigen::Vector3d& centre = Eigen::Vector3d::Zero()) {
-  const Mesh mesh = EllipsoidSurface(centre, Eigen::Vector3d::Constant(radius), 120, false);
+  const Mesh mesh = EllipsoidSurface(centre, Eigen::Vector3d::Constant(radius), 100, false);
   return {"ball", mesh.vertices, mesh.triangles, weight};
 }
 
