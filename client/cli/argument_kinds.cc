@@ -43,6 +43,7 @@ constexpr KindRow kKindRows[] = {
     {"--set", Kind::kSetting, "NAME=VALUE", ""},
     {"--preset", Kind::kPreset, "PRESET", ""},
     {"phantom --body", Kind::kChoice, "BODY", "adult small tall flat"},
+    {"fluoroscopy --view", Kind::kChoice, "VIEW", "pa ap left-lateral lao-30 rao-30"},
     {"--body", Kind::kOther, "BODY", ""},
     {"--pull", Kind::kOther, "BODY:VERTEX:X,Y,Z", ""},
     {"--force", Kind::kOther, "X,Y,Z", ""},

@@ -34,6 +34,8 @@ CommandFunction SetUpFit(CLI::App& command);
 // at all.
 CommandFunction SetUpPatient(CLI::App& command);
 CommandFunction SetUpPhantom(CLI::App& command);
+// fluoroscopy/fluoroscopy.cc: fluoroscopy/ on a run in this process; no service.
+CommandFunction SetUpFluoroscopy(CLI::App& command);
 
 // --- sessions of a server ---
 // scenes.cc, describe.cc: ListScenes, DescribeScene. Compiling a large scene takes minutes; the server's limits apply

@@ -76,3 +76,27 @@ test("ContactSheet", { timeout: 900_000 }, async () => {
     await server.end();
   }
 });
+
+// `npm run screenshot -- -t Fluoroscopy`: a sniff with a paralysed right hemidiaphragm, by X-rays.
+test("Fluoroscopy", { timeout: 300_000 }, async () => {
+  const browser = await launchBrowser();
+  const server = await Server.start("none");
+  try {
+    await server.phrenic("create", "thorax", "--id", "palsy", "--preset", "palsy-right", "--play");
+    const viewer = await ViewerPage.open(browser, `${server.url}?session=palsy&view=student`, {
+      width: 1240,
+      height: 760,
+    });
+    const { page } = viewer;
+    await page.click("#fluoroscopy-open");
+    await page.click("#sniff-run");
+    await page.getByText("most of 3 sniffs").waitFor({ timeout: 120_000 });
+    await page.click('#play[aria-label="Pause"]');
+    await page.mouse.move(0, 0);
+    await page.waitForTimeout(3000);
+    await page.locator("#fluoroscopy").screenshot({ path: join(web, "fluoroscopy.jpg"), type: "jpeg", quality: 85 });
+  } finally {
+    await browser.close();
+    await server.end();
+  }
+});

@@ -56,6 +56,7 @@ import { viewpointKeys } from "../viewer/viewpoints";
 import { drawers } from "./drawers";
 import { dropZone } from "./drop_zone";
 import { filmStage } from "./film_stage";
+import { Fluoroscopy } from "./fluoroscopy";
 import { stageInsets } from "./insets";
 import { SceneTools } from "./scene_tools";
 import { SecondView } from "./second_view";
@@ -101,6 +102,7 @@ export class App {
   /** The frame of a film that is drawn; undefined while no film is made. */
   private filmed: DisplayedFrame | undefined;
   private readonly student: StudentView;
+  private readonly fluoroscopy: Fluoroscopy;
   private readonly margins = new Margins();
   private readonly connectionBadge: ConnectionBadge;
   private readonly viewers = new ViewerCount();
@@ -146,7 +148,13 @@ export class App {
     this.graphs = new GraphsPanel(() => sessionId, this.tools.ownSeries);
     this.secondView = this.openSecondView();
     this.student = this.openStudentView();
-    window.phrenic = testHook(() => this.bodies.value, this.frames, this.viewer);
+    this.fluoroscopy = this.openFluoroscopy();
+    window.phrenic = testHook(
+      () => this.bodies.value,
+      this.frames,
+      this.viewer,
+      () => this.fluoroscopy.picture,
+    );
   }
 
   /** Builds the page and connects to the server. */
@@ -156,7 +164,7 @@ export class App {
     this.buildHeader();
     this.layerStyles.all.subscribe((styles) => {
       for (const { layer, opacity, visible } of styles) this.viewer.setLayerOpacity(layer, visible ? opacity : 0);
-      this.connection.setBodies(this.layerStyles.neededBodies(this.bodies.value));
+      this.requestBodies();
     });
     this.tools.labels.subscribe(() => this.resize());
     this.comparisons.result.subscribe((result) => result && this.showLayerOf(result.body));
@@ -192,6 +200,7 @@ export class App {
       },
       afterDraw: (orientation: Parameters<Margins["show"]>[0]) => {
         this.margins.show(orientation);
+        this.fluoroscopy.draw();
         this.tools.afterDraw(orientation);
         this.secondView?.followCamera();
         this.cameraSharing.sendIfMoved();
@@ -227,6 +236,24 @@ export class App {
     );
   }
 
+  private openFluoroscopy(): Fluoroscopy {
+    const { viewer, controller, participation, presets } = this;
+    return new Fluoroscopy({
+      viewer,
+      controller,
+      presets,
+      bodies: () => this.bodies.value,
+      frame: () => this.displayed?.arrays,
+      refusal: () => refusalReason(participation.roles.value),
+      changed: () => this.requestBodies(),
+    });
+  }
+
+  /** Requests the positions of the bodies that are seen, by eyes or by X-rays. */
+  private requestBodies(): void {
+    this.connection.setBodies(this.fluoroscopy.isOpen ? [] : this.layerStyles.neededBodies(this.bodies.value));
+  }
+
   private buildStage(): void {
     const { controller, viewer, tools } = this;
     viewer.enablePulling(
@@ -254,7 +281,7 @@ export class App {
     elementById("readout-slot").append(this.timeline.element, this.readout.element);
     elementById("margins").append(...this.margins.elements);
     const bar = viewBar(viewer, elementById("view"), tools.viewpoints, (name) => tools.visit(name));
-    elementById("views").append(...bar, tools.structures.search);
+    elementById("views").append(...bar, this.fluoroscopy.button, tools.structures.search);
     elementById("banners").append(...banners(controller, this.connectionState, () => void this.chooser.show()));
   }
 
@@ -314,6 +341,18 @@ export class App {
         { key: "n", description: "Names of structures", run: () => this.tools.labels.set(!this.tools.labels.value) },
         { key: "m", description: "Measure a distance", run: () => this.tools.measuring.start() },
         {
+          key: "x",
+          description: "Fluoroscopy",
+          when: () => !this.fluoroscopy.button.hidden,
+          run: () => void this.fluoroscopy.toggle(),
+        },
+        {
+          key: "Escape",
+          description: "End fluoroscopy",
+          when: () => this.fluoroscopy.isOpen,
+          run: () => this.fluoroscopy.close(),
+        },
+        {
           key: "Escape",
           description: "End measuring",
           when: () => this.tools.measuring.measurements.tool.value !== undefined,
@@ -371,6 +410,7 @@ export class App {
         this.frames.receive(frame, this.clock.now());
         this.graphs.receive(frame);
         this.student.receive(frame);
+        this.fluoroscopy.receive(frame);
         this.tools.receive(frame);
       },
       camera: (camera) => this.cameraSharing.receive(camera),
@@ -393,6 +433,7 @@ export class App {
     this.layerStyles.start(bodies, report);
     this.tools.start(bodies, this.tissue, diagram);
     this.student.start();
+    this.fluoroscopy.start(bodies);
     elementById("loading").hidden = true;
   }
 

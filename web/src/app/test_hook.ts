@@ -1,3 +1,4 @@
+import type { Fluoroscope } from "../fluoroscopy/fluoroscope";
 import type { FrameBuffer } from "../frames/frame_buffer";
 import { type Body, vertexAt } from "../geometry/bodies";
 import type { Viewer } from "../viewer/viewer";
@@ -20,6 +21,8 @@ export interface TestHook {
   eye(): [number, number, number];
   /** True while the camera flies to a view. */
   flying(): boolean;
+  /** The picture by X-rays; undefined while it is not shown. */
+  fluoroscopy(): Pick<Fluoroscope, "sums" | "thickness"> | undefined;
 }
 
 declare global {
@@ -29,7 +32,12 @@ declare global {
 }
 
 /** Returns the hook of a page. */
-export function testHook(bodies: () => Body[], frames: FrameBuffer, viewer: Viewer): TestHook {
+export function testHook(
+  bodies: () => Body[],
+  frames: FrameBuffer,
+  viewer: Viewer,
+  fluoroscopy: TestHook["fluoroscopy"],
+): TestHook {
   const find = (name: string) => {
     const body = bodies().find((each) => each.name === name);
     if (body === undefined) throw new RangeError(`There is no body "${name}".`);
@@ -46,6 +54,7 @@ export function testHook(bodies: () => Body[], frames: FrameBuffer, viewer: View
       return [x, y, z];
     },
     flying: () => viewer.rig.flying,
+    fluoroscopy,
     vertices: (body) => find(body).rest.length / 3,
     vertex: (body, index) => {
       if (frames.arrays === undefined) throw new RangeError("There is no frame yet.");

@@ -79,6 +79,7 @@ export class Viewer {
   private shown: FrameArrays | undefined;
   /** True while a film is made: only its frames are drawn. */
   private filming = false;
+  private isCovered = false;
 
   constructor(
     readonly canvas: HTMLCanvasElement,
@@ -202,6 +203,13 @@ export class Viewer {
   /** True if the current cut clips this position. */
   isClipped(place: THREE.Vector3): boolean {
     return this.renderer.clippingPlanes.some((plane) => plane.distanceToPoint(place) < 0);
+  }
+
+  /** Sets whether another picture covers the view: frames advance and the host is called, but nothing is drawn. */
+  setCovered(covered: boolean): void {
+    this.isCovered = covered;
+    this.shown = undefined;
+    this.refresh();
   }
 
   /** Draws in the next animation frame. */
@@ -403,9 +411,10 @@ export class Viewer {
 
   private draw(): void {
     this.dirty = false;
+    const hidden = this.isCovered && !this.filming;
     const frame = this.host.frame();
     if (frame !== undefined && frame !== this.shown) {
-      for (const view of this.views) if (view.group.visible) view.update(frame);
+      for (const view of this.views) if (view.group.visible && !hidden) view.update(frame);
       this.host.beforeDraw?.(frame);
       this.dirty = false;
     }
@@ -415,7 +424,7 @@ export class Viewer {
     const orientation = this.rig.orientation();
     this.markers.scale(markerSize / orientation.pixelsPerMetre);
     this.lights.follow(this.rig.sceneCenter, extent);
-    this.renderer.render(this.scene, this.rig.camera);
+    if (!hidden) this.renderer.render(this.scene, this.rig.camera);
     this.drawn++;
     if (frame !== undefined && this.firstDrawTime < 0) this.firstDrawTime = performance.now();
     if (frame !== undefined && this.unshaded) this.shade();
