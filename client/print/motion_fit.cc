@@ -90,20 +90,6 @@ void PrintStrongestCorrelation(const fit::MotionFit& fit) {
                                fit.parameters[static_cast<size_t>(j)].name);
 }
 
-void PrintErrors(const fit::MotionFit& fit) {
-  Table models({"model", "numbers", "mean mm", "p95 mm"});
-  for (const fit::Baseline& each : fit.baselines) {
-    models.Add({each.name, absl::StrCat(each.numbers), Mm(each.held_out.mean), Mm(each.held_out.p95)});
-  }
-  models.Add(
-      {"elastic lungs that slide", absl::StrCat(fit.parameters.size()), Mm(fit.held_out.mean), Mm(fit.held_out.p95)});
-  if (fit.assimilated) {
-    models.Add({"with the smallest elastic deformation through the fitting points", "-", Mm(fit.assimilated->mean),
-                Mm(fit.assimilated->p95)});
-  }
-  models.Print(std::cout);
-}
-
 void PrintRegions(const fit::MotionFit& fit) {
   Table regions({"region", "points", "motion mm", "mean mm", "p95 mm"});
   for (const fit::RegionError& each : fit.regions) {
@@ -184,6 +170,20 @@ void PrintRegistrationCsv(const fit::RegisteredLungs& registered) { Registration
 
 void PrintDoubts(const fit::RegisteredLungs& registered) {
   for (const std::string& doubt : registered.doubts) std::cerr << "phrenic: warning: " << doubt << "\n";
+}
+
+void PrintErrors(const fit::MotionFit& fit) {
+  Table models({"model", "numbers", "mean mm", "p95 mm"});
+  for (const fit::Baseline& each : fit.baselines) {
+    models.Add({each.name, absl::StrCat(each.numbers), Mm(each.held_out.mean), Mm(each.held_out.p95)});
+  }
+  models.Add(
+      {"elastic lungs that slide", absl::StrCat(fit.parameters.size()), Mm(fit.held_out.mean), Mm(fit.held_out.p95)});
+  if (fit.assimilated) {
+    models.Add({"with the smallest elastic deformation through the fitting points", "-", Mm(fit.assimilated->mean),
+                Mm(fit.assimilated->p95)});
+  }
+  models.Print(std::cout);
 }
 
 json FitJson(const fit::MotionFit& fit, const fit::FitOptions& options) {

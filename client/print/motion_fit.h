@@ -18,6 +18,8 @@ void PrintDoubts(const fit::RegisteredLungs& registered);
 // The numbers of one fit; `options` are those it was made with.
 nlohmann::json FitJson(const fit::MotionFit& fit, const fit::FitOptions& options);
 void PrintFit(const fit::MotionFit& fit, const fit::FitOptions& options);
+// The held-out errors beside those of plain models.
+void PrintErrors(const fit::MotionFit& fit);
 // Rows: kind, name, numbers, points, value, standard_error, spread, mean, p95.
 void PrintFitCsv(const fit::MotionFit& fit);
 

@@ -14,6 +14,7 @@ namespace {
 constexpr double kSmoothing = 0.2;   // [s] of the moving mean by which breaths are found
 constexpr double kHysteresis = 0.2;  // of the depth, about the middle
 constexpr Eigen::Index kMostUsed = 4000;
+constexpr double kLeastOfExtent = 1e-6;  // that breaths are of a recording's extent
 
 struct RawTrace {
   std::vector<double> time, value;  // [s], [l] or [mm]
@@ -101,6 +102,11 @@ std::vector<double> WithoutTrend(const RawTrace& raw) {
   const double slope = (t * value).sum() / std::max(t.square().sum(), 1e-30);
   const Eigen::ArrayXd flat = value - value.mean() - slope * t;
   return {flat.begin(), flat.end()};
+}
+
+double ExtentOf(const std::vector<double>& values) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return *most - *least;
 }
 
 // Returns the mean over a window about each sample.
@@ -220,7 +226,9 @@ absl::StatusOr<TracedBreaths> ParseTrace(Traced traced, std::string_view name, s
   const auto none = absl::InvalidArgumentError(absl::StrCat(
       std::string(name), ": no whole breath is in it: record from before one inspiration to after the next"));
   if (raw->time.size() < 8) return none;
-  const std::vector<double> crossings = UpCrossings(raw->time, Smoothed(raw->time, WithoutTrend(*raw)));
+  const std::vector<double> flat = WithoutTrend(*raw);
+  if (!(ExtentOf(flat) > kLeastOfExtent * ExtentOf(raw->value))) return none;  // a line
+  const std::vector<double> crossings = UpCrossings(raw->time, Smoothed(raw->time, flat));
   if (crossings.size() < 2) return none;
   const Troughs troughs = FindTroughs(*raw, crossings);
   if (troughs.time.empty()) return none;
