@@ -109,9 +109,9 @@ TimeCourse AddTimeCourse(const KindOfData& kind, FitSpace& space) {
   const std::string of = absl::StrCat(" of ", kind.source);
   at.start = space.Add({absl::StrCat("beginning", of), "of an inspiration, in breaths before the recording's middle",
                         "1", 1, 0.2, 0.1, 0, 0.5});
-  const double unsure = kind.unit == "l" ? 1e-4 : 3e-3;  // [m^3], [m]
+  const double unsure = kind.unit == "l" ? 2e-5 : 1e-3;  // of the ends of expirations [m^3], [m]
   at.offset = space.Add({absl::StrCat("offset", of), "of the recording's end of expiration", kind.unit, kind.per_unit,
-                         0, unsure, -10 * unsure, 10 * unsure});
+                         0, unsure, -100 * unsure, 100 * unsure});
   return at;
 }
 
