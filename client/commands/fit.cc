@@ -16,6 +16,7 @@
 #include "client/files/measured_files.h"
 #include "client/files/motion_vectors.h"
 #include "client/files/person_file.h"
+#include "client/files/person_structures.h"
 #include "client/files/scene_lungs.h"
 #include "client/files/whole_file.h"
 #include "client/print/joint_fit.h"
@@ -33,7 +34,8 @@ namespace {
 
 struct RegisterOptions {
   SceneOptions scene;
-  std::vector<std::string> exhale;
+  std::vector<std::string> exhale, surfaces;
+  std::string volume, labels = "totalsegmentator";
   std::string data_dir, out;  // empty out: no files
 };
 
@@ -64,23 +66,51 @@ absl::Status WriteLungs(const std::string& folder, const fit::LungTemplates& tem
   return absl::OkStatus();
 }
 
+// What a person's lungs are registered to.
+struct RegisterInput {
+  Points points;
+  std::vector<fit::PersonStructure> structures;  // empty: points alone
+};
+
+absl::StatusOr<RegisterInput> ReadRegisterInput(const RegisterOptions& options) {
+  if (!options.exhale.empty()) {
+    const auto points = fit::ReadLandmarks(options.exhale);
+    if (!points.ok()) return points.status();
+    return RegisterInput{points->exhale, {}};
+  }
+  auto structures =
+      options.volume.empty() ? ReadStructures(options.surfaces) : ReadLabelledLungs(options.volume, options.labels);
+  if (!structures.ok()) return structures.status();
+  auto points = fit::PointsInLungs(*structures);
+  if (!points.ok()) return points.status();
+  return RegisterInput{*std::move(points), *std::move(structures)};
+}
+
 int RegisterPerson(const Context& context, const RegisterOptions& options) {
-  const auto points = fit::ReadLandmarks(options.exhale);
-  if (!points.ok()) return Fail(points.status());
+  const int given =
+      (options.exhale.empty() ? 0 : 1) + (options.surfaces.empty() ? 0 : 1) + (options.volume.empty() ? 0 : 1);
+  if (given != 1) {
+    Fail(absl::InvalidArgumentError("give one of --exhale (points), --surface (files) and --volume (labels)"));
+    return kUsage;
+  }
+  const auto input = ReadRegisterInput(options);
+  if (!input.ok()) return FailFit(context, input.status());
   const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
   if (!scene.ok()) return Fail(scene.status());
   const auto lungs = ReadSceneLungs(*scene, options.data_dir);
   if (!lungs.ok()) return FailFit(context, lungs.status());
   const auto registered =
-      WithProgress("registering", [&] { return fit::RegisterLungs(lungs->templates, points->exhale); });
+      WithProgress("registering", [&] { return fit::RegisterLungs(lungs->templates, input->points); });
   if (!registered.ok()) return FailFit(context, registered.status());
   PrintDoubts(*registered);
+  const auto residuals = fit::CompareStructures(lungs->templates, *registered, input->structures);
   if (context.json()) {
-    PrintJson(RegistrationJson(*registered));
+    PrintJson(RegistrationJson(*registered, residuals));
   } else if (context.output == Output::kCsv) {
     PrintRegistrationCsv(*registered);
   } else {
     PrintRegistration(*registered);
+    PrintStructures(residuals);
   }
   if (options.out.empty()) return kOk;
   const absl::Status written = WriteLungs(options.out, lungs->templates, *registered);
@@ -313,10 +343,10 @@ absl::Status CheckSource(const std::string& text) {
   return absl::InvalidArgumentError("a source is at most 500 characters of ASCII");
 }
 
-void AddExhale(CLI::App& command, std::vector<std::string>& files, bool required) {
+void AddExhale(CLI::App& command, std::vector<std::string>& files) {
   CLI::Option* option = command.add_option(
       "--exhale", files, "points in the lungs at end exhale (.csv with x,y,z, .fcsv, .mrk.json) [mm, LPS]");
-  option->expected(1)->required(required);
+  option->expected(1);
 }
 
 void AddFiles(CLI::App& command, FitCommandOptions& options) {
@@ -342,7 +372,7 @@ void AddFiles(CLI::App& command, FitCommandOptions& options) {
                   "lung-surface=6, volume=0.05, m-mode=2, markers=4")
       ->check(ParsedBy(&CheckError))
       ->allow_extra_args(false);
-  AddExhale(command, options.data.exhale, false);
+  AddExhale(command, options.data.exhale);
   command.add_option("--residuals", options.residuals, "write measured, predicted and residual vectors (.csv, .vtp)");
   command.add_option("--expected", options.expected,
                      "write the expected motion of the points and its spread (.csv, .vtp)");
@@ -359,7 +389,16 @@ void AddFiles(CLI::App& command, FitCommandOptions& options) {
 CommandFunction SetUpRegister(CLI::App& command) {
   const auto options = std::make_shared<RegisterOptions>();
   AddScene(command, options->scene);
-  AddExhale(command, options->exhale, true);
+  AddExhale(command, options->exhale);
+  command
+      .add_option(
+          "--surface", options->surfaces,
+          "a surface at end exhale [mm, LPS]: lung-right=FILE, lung-left=FILE, and diaphragm=FILE to be judged by")
+      ->check(ParsedBy(&CheckStructure))
+      ->allow_extra_args(false);
+  command.add_option("--volume", options->volume,
+                     "label volume at end exhale (NIfTI, DICOM Segmentation) with the lungs");
+  AddLabels(command, options->labels);
   AddDataFolder(command, options->data_dir);
   command.add_option("--out", options->out, "write the person's lungs to this folder (lung-right.obj, lung-left.obj)");
   return Bind(&RegisterPerson, options);

@@ -150,7 +150,7 @@ json TogetherJson(const fit::MotionStudy& study) {
 
 }  // namespace
 
-json RegistrationJson(const fit::RegisteredLungs& registered) {
+json RegistrationJson(const fit::RegisteredLungs& registered, const std::vector<fit::StructureResidual>& residuals) {
   json lungs = json::array();
   for (int side = 0; side < 2; ++side) {
     const fit::Registration& lung = registered.lungs[side];
@@ -161,7 +161,27 @@ json RegistrationJson(const fit::RegisteredLungs& registered) {
                      {"outside", lung.outside},
                      {"farthest_mm", RoundedMm(lung.farthest)}});
   }
-  return {{"gap_x_mm", RoundedMm(registered.gap)}, {"lungs", lungs}, {"doubts", registered.doubts}};
+  json result = {{"gap_x_mm", RoundedMm(registered.gap)}, {"lungs", lungs}, {"doubts", registered.doubts}};
+  for (const fit::StructureResidual& each : residuals) {
+    result["structures"].push_back({{"name", each.name},
+                                    {"shaped_by", each.shaped},
+                                    {"points", each.points},
+                                    {"mean_mm", RoundedMm(each.mean)},
+                                    {"p95_mm", RoundedMm(each.p95)}});
+  }
+  return result;
+}
+
+void PrintStructures(const std::vector<fit::StructureResidual>& residuals) {
+  if (residuals.empty()) return;
+  Table table({"structure", "points", "mean mm", "p95 mm", "of the person"});
+  for (const fit::StructureResidual& each : residuals) {
+    table.Add({each.name, absl::StrCat(each.points), Mm(each.mean), Mm(each.p95),
+               each.shaped ? "size and place along x, y, z; the shape is the template's"
+                           : "nothing: it judges the lungs' bases alone"});
+  }
+  std::cout << "\nregistered lungs against the person's surfaces:\n";
+  table.Print(std::cout);
 }
 
 void PrintRegistration(const fit::RegisteredLungs& registered) { RegistrationTable(registered).Print(std::cout); }

@@ -6,10 +6,14 @@
 
 #include "client/connection/context.h"
 #include "server/fit/motion_study.h"
+#include "server/fit/structures.h"
 
 namespace phrenic::client {
 
-nlohmann::json RegistrationJson(const fit::RegisteredLungs& registered);
+// With the distances from the person's structures, if there are any.
+nlohmann::json RegistrationJson(const fit::RegisteredLungs& registered,
+                                const std::vector<fit::StructureResidual>& residuals = {});
+void PrintStructures(const std::vector<fit::StructureResidual>& residuals);
 void PrintRegistration(const fit::RegisteredLungs& registered);
 void PrintRegistrationCsv(const fit::RegisteredLungs& registered);
 // On standard error.
