@@ -172,39 +172,6 @@ fit::FitProgress ShowOn(Progress& progress, const Context& context) {
   };
 }
 
-int FitLandmarks(const Context& context, const FitCommandOptions& options) {
-  const auto landmarks = fit::ReadLandmarks(options.data.landmarks);
-  if (!landmarks.ok()) return Fail(landmarks.status());
-  const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
-  if (!scene.ok()) return Fail(scene.status());
-  const auto lungs = ReadSceneLungs(*scene, options.data_dir);
-  if (!lungs.ok()) return FailFit(context, lungs.status());
-  absl::StatusOr<fit::MotionFit> found = absl::UnknownError("");
-  {
-    Progress progress("fitting " + options.scene.scene, 1);
-    found = fit::FitMotion(lungs->templates, *landmarks, options.fit, ShowOn(progress, context));
-  }
-  if (!found.ok()) return FailFit(context, found.status());
-  PrintDoubts(found->registered);
-  if (context.json()) {
-    PrintJson(FitJson(*found, options.fit));
-  } else if (context.output == Output::kCsv) {
-    PrintFitCsv(*found);
-  } else {
-    PrintFit(*found, options.fit);
-  }
-  if (!options.out.empty()) {
-    const absl::Status status = WriteFittedScene(options.out, *lungs, *found, options.fit,
-                                                 SourceOf(options, options.data.landmarks), options.show_landmarks);
-    if (!status.ok()) return Fail(status);
-    std::cerr << "wrote " << options.out << "\n";
-  }
-  if (options.residuals.empty()) return kOk;
-  if (const absl::Status status = WriteResiduals(options.residuals, *found); !status.ok()) return Fail(status);
-  std::cerr << "wrote " << options.residuals << "\n";
-  return kOk;
-}
-
 // Returns the files' names.
 std::string SourceOf(const FitCommandOptions& options, const std::vector<fit::MeasuredFile>& files) {
   std::vector<std::string> names;
@@ -251,6 +218,49 @@ int FitAll(const Context& context, const FitCommandOptions& options) {
     PrintJointFit(*found, options.fit);
   }
   return WriteJoint(options, *lungs, *found, SourceOf(options, *files));
+}
+
+// Fits to landmarks of several times, by a column of their file.
+int FitPhases(const Context& context, const FitCommandOptions& options) {
+  if (const std::string fault = JointUsageFault(options); !fault.empty()) {
+    Fail(absl::InvalidArgumentError(fault));
+    return kUsage;
+  }
+  return FitAll(context, options);
+}
+
+int FitLandmarks(const Context& context, const FitCommandOptions& options) {
+  const auto landmarks = fit::ReadLandmarks(options.data.landmarks);
+  if (!landmarks.ok()) return Fail(landmarks.status());
+  if (landmarks->phase.size() > 0) return FitPhases(context, options);
+  const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
+  if (!scene.ok()) return Fail(scene.status());
+  const auto lungs = ReadSceneLungs(*scene, options.data_dir);
+  if (!lungs.ok()) return FailFit(context, lungs.status());
+  absl::StatusOr<fit::MotionFit> found = absl::UnknownError("");
+  {
+    Progress progress("fitting " + options.scene.scene, 1);
+    found = fit::FitMotion(lungs->templates, *landmarks, options.fit, ShowOn(progress, context));
+  }
+  if (!found.ok()) return FailFit(context, found.status());
+  PrintDoubts(found->registered);
+  if (context.json()) {
+    PrintJson(FitJson(*found, options.fit));
+  } else if (context.output == Output::kCsv) {
+    PrintFitCsv(*found);
+  } else {
+    PrintFit(*found, options.fit);
+  }
+  if (!options.out.empty()) {
+    const absl::Status status = WriteFittedScene(options.out, *lungs, *found, options.fit,
+                                                 SourceOf(options, options.data.landmarks), options.show_landmarks);
+    if (!status.ok()) return Fail(status);
+    std::cerr << "wrote " << options.out << "\n";
+  }
+  if (options.residuals.empty()) return kOk;
+  if (const absl::Status status = WriteResiduals(options.residuals, *found); !status.ok()) return Fail(status);
+  std::cerr << "wrote " << options.residuals << "\n";
+  return kOk;
 }
 
 // Predicts the motion of the points, each number of the prior varying independently.

@@ -143,6 +143,15 @@ absl::StatusOr<Evidence> ReadEvidence(const v1::FitMotionRequest& request) {
   return evidence;
 }
 
+// Landmarks of several times, by a column of their file.
+absl::StatusOr<Evidence> ReadPhases(const v1::FitMotionRequest& request) {
+  if (request.assimilate()) return absl::InvalidArgumentError("assimilate: belongs to landmarks of one time");
+  MeasuredFile file;
+  file.name = request.landmarks(0).name().empty() ? "landmarks[0]" : request.landmarks(0).name();
+  file.bytes = request.landmarks(0).content();
+  return ParseEvidence({file});
+}
+
 std::string MeasuredNames(const v1::FitMotionRequest& request) {
   std::vector<std::string> names;
   for (const v1::MeasuredFile& file : request.measured()) names.push_back(file.name());
@@ -171,13 +180,18 @@ absl::StatusOr<RequestedFit> ReadFitRequest(const v1::FitMotionRequest& request)
     absl::StatusOr<Landmarks> landmarks = ReadFiles(request);
     if (!landmarks.ok()) return landmarks.status();
     if (absl::Status status = CheckPairCount(*landmarks); !status.ok()) return status;
+    if (landmarks->phase.size() > 0) {
+      absl::StatusOr<Evidence> evidence = ReadPhases(request);
+      if (!evidence.ok()) return evidence.status();
+      requested.evidence = *std::move(evidence);
+    }
     requested.landmarks = *std::move(landmarks);
   }
   if (request.has_modes()) requested.options.numbers = request.modes();
   if (request.has_split()) requested.options.split = static_cast<std::uint64_t>(request.split());
   requested.options.assimilate = request.assimilate();
   requested.scene_name = request.scene_name().empty() ? "person" : request.scene_name();
-  requested.source = requested.evidence ? MeasuredNames(request) : SourceOf(request);
+  requested.source = request.measured_size() > 0 ? MeasuredNames(request) : SourceOf(request);
   requested.show_landmarks = request.show_landmarks();
   return requested;
 }

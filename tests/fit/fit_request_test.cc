@@ -174,6 +174,20 @@ TEST(FitRequest, OfSeveralKindsSendsTheNumbersOfTheJointFit) {
   EXPECT_NEAR(result->scene().parameters().breath_length(), 4.4, 0.1);
 }
 
+TEST(FitRequest, OfAColumnPhaseIsOfSeveralTimes) {
+  v1::FitMotionRequest request =
+      RequestOf("exhale_x,exhale_y,exhale_z,inhale_x,inhale_y,inhale_z,phase\n1,2,3,1,2,1,0.5\n1,2,3,1,2,-1,1\n");
+  const auto requested = ReadFitRequest(request);
+  ASSERT_TRUE(requested.ok()) << requested.status();
+  ASSERT_TRUE(requested->evidence.has_value());
+  EXPECT_EQ(requested->evidence->landmarks.phase[0], 0.5);
+  EXPECT_EQ(requested->source, "pairs.csv");
+  request.set_assimilate(true);
+  EXPECT_THAT(RefusalOf(request), HasSubstr("assimilate: belongs to landmarks of one time"));
+  request = RequestOf("exhale_x,exhale_y,exhale_z,inhale_x,inhale_y,inhale_z,phase\n1,2,3,1,2,1,2\n");
+  EXPECT_THAT(RefusalOf(request), HasSubstr("pairs.csv:2: the phase must be above 0"));
+}
+
 TEST(FitRequest, OfSeveralKindsIsRefusedByFileOrByField) {
   v1::FitMotionRequest request = RequestOf(PairLines(3));
   AddMeasured(v1::MEASURED_KIND_VOLUME, PersonTruth::One().Volume(), request);

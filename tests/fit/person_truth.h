@@ -85,7 +85,7 @@ class PersonTruth {
   }
   MeasuredFile Volume(double noise = 0.00002) const { return Trace(Measured::kVolume, volume(), noise); }
 
-  // Places in front of and beside the lungs, 20 mm from their surface.
+  // Places beside the lungs, 5 mm from their surface.
   MeasuredFile MarkersOf(double noise) const {
     MeasuredFile file = Named(Measured::kMarkers, "markers.csv");
     file.bytes = "name,rest_x,rest_y,rest_z,moved_x,moved_y,moved_z\n";
