@@ -117,6 +117,7 @@ absl::StatusOr<Markers> ReadTracks(CsvTable& table) {
   }
   if (frames.size() < 10) return table.Error("tracks need 10 frames at least, of a whole breath: or give pairs");
   std::vector<double> spreads;
+  spreads.reserve(frames.size());
   for (const Points& frame : frames) spreads.push_back(SpreadAbout(frame));
   std::vector<size_t> order(frames.size());
   std::iota(order.begin(), order.end(), size_t{0});
