@@ -13,13 +13,17 @@
 #include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
 #include "client/connection/errors.h"
+#include "client/files/measured_files.h"
 #include "client/files/motion_vectors.h"
 #include "client/files/person_file.h"
+#include "client/files/person_structures.h"
 #include "client/files/scene_lungs.h"
 #include "client/files/whole_file.h"
+#include "client/print/joint_fit.h"
 #include "client/print/motion_fit.h"
 #include "client/print/output.h"
 #include "client/terminal/progress.h"
+#include "server/fit/joint_fit.h"
 #include "server/fit/motion_fit.h"
 #include "server/fit/read_landmarks.h"
 #include "server/meshio/meshio.h"
@@ -30,13 +34,14 @@ namespace {
 
 struct RegisterOptions {
   SceneOptions scene;
-  std::vector<std::string> exhale;
+  std::vector<std::string> exhale, surfaces;
+  std::string volume, labels = "totalsegmentator";
   std::string data_dir, out;  // empty out: no files
 };
 
 struct FitCommandOptions {
   SceneOptions scene;
-  std::vector<std::string> landmarks, exhale;
+  MeasuredOptions data;
   std::optional<double> descent, tidal_volume;  // [mm], [l]
   fit::FitOptions fit;
   bool show_landmarks = false;                     // in the scene
@@ -61,23 +66,51 @@ absl::Status WriteLungs(const std::string& folder, const fit::LungTemplates& tem
   return absl::OkStatus();
 }
 
+// What a person's lungs are registered to.
+struct RegisterInput {
+  Points points;
+  std::vector<fit::PersonStructure> structures;  // empty: points alone
+};
+
+absl::StatusOr<RegisterInput> ReadRegisterInput(const RegisterOptions& options) {
+  if (!options.exhale.empty()) {
+    const auto points = fit::ReadLandmarks(options.exhale);
+    if (!points.ok()) return points.status();
+    return RegisterInput{points->exhale, {}};
+  }
+  auto structures =
+      options.volume.empty() ? ReadStructures(options.surfaces) : ReadLabelledLungs(options.volume, options.labels);
+  if (!structures.ok()) return structures.status();
+  auto points = fit::PointsInLungs(*structures);
+  if (!points.ok()) return points.status();
+  return RegisterInput{*std::move(points), *std::move(structures)};
+}
+
 int RegisterPerson(const Context& context, const RegisterOptions& options) {
-  const auto points = fit::ReadLandmarks(options.exhale);
-  if (!points.ok()) return Fail(points.status());
+  const int given =
+      (options.exhale.empty() ? 0 : 1) + (options.surfaces.empty() ? 0 : 1) + (options.volume.empty() ? 0 : 1);
+  if (given != 1) {
+    Fail(absl::InvalidArgumentError("give one of --exhale (points), --surface (files) and --volume (labels)"));
+    return kUsage;
+  }
+  const auto input = ReadRegisterInput(options);
+  if (!input.ok()) return FailFit(context, input.status());
   const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
   if (!scene.ok()) return Fail(scene.status());
   const auto lungs = ReadSceneLungs(*scene, options.data_dir);
   if (!lungs.ok()) return FailFit(context, lungs.status());
   const auto registered =
-      WithProgress("registering", [&] { return fit::RegisterLungs(lungs->templates, points->exhale); });
+      WithProgress("registering", [&] { return fit::RegisterLungs(lungs->templates, input->points); });
   if (!registered.ok()) return FailFit(context, registered.status());
   PrintDoubts(*registered);
+  const auto residuals = fit::CompareStructures(lungs->templates, *registered, input->structures);
   if (context.json()) {
-    PrintJson(RegistrationJson(*registered));
+    PrintJson(RegistrationJson(*registered, residuals));
   } else if (context.output == Output::kCsv) {
     PrintRegistrationCsv(*registered);
   } else {
     PrintRegistration(*registered);
+    PrintStructures(residuals);
   }
   if (options.out.empty()) return kOk;
   const absl::Status written = WriteLungs(options.out, lungs->templates, *registered);
@@ -85,19 +118,35 @@ int RegisterPerson(const Context& context, const RegisterOptions& options) {
 }
 
 // Returns what is wrong with the combination of options; empty if nothing is.
-std::string FitUsageFault(const FitCommandOptions& options) {
-  const bool number = options.descent || options.tidal_volume;
-  if (options.landmarks.empty() == options.exhale.empty()) {
-    return "give --landmarks with pairs, or --exhale with one number: --descent or --tidal-volume";
+std::string JointUsageFault(const FitCommandOptions& options) {
+  if (options.descent || options.tidal_volume) {
+    return "--descent and --tidal-volume belong to --exhale alone: give a recording as --volume or --m-mode";
   }
-  if (!options.landmarks.empty() && number) return "--descent and --tidal-volume belong to --exhale";
-  if (!options.exhale.empty() && options.descent.has_value() == options.tidal_volume.has_value()) {
+  if (options.fit.assimilate) return "--assimilate belongs to --landmarks alone";
+  if (!options.expected.empty()) return "--expected belongs to --exhale with one number";
+  const bool pairs = !options.data.landmarks.empty();
+  if (!options.residuals.empty() && !pairs) return "--residuals belongs to --landmarks";
+  if (options.show_landmarks && (options.out.empty() || !pairs)) {
+    return "--show-landmarks belongs to --landmarks with --out";
+  }
+  return "";
+}
+
+std::string FitUsageFault(const FitCommandOptions& options) {
+  if (HasOtherKinds(options.data)) return JointUsageFault(options);
+  const bool number = options.descent || options.tidal_volume;
+  if (options.data.landmarks.empty() == options.data.exhale.empty()) {
+    return "give --landmarks with pairs, --exhale with one number (--descent or --tidal-volume), or any of --surface, "
+           "--lung-surface, --volume, --m-mode and --markers";
+  }
+  if (!options.data.landmarks.empty() && number) return "--descent and --tidal-volume belong to --exhale";
+  if (!options.data.exhale.empty() && options.descent.has_value() == options.tidal_volume.has_value()) {
     return "--exhale needs one number: --descent or --tidal-volume";
   }
-  if (!options.landmarks.empty() && !options.expected.empty()) return "--expected belongs to --exhale";
+  if (!options.data.landmarks.empty() && !options.expected.empty()) return "--expected belongs to --exhale";
   const bool fitting = !options.residuals.empty() || options.fit.assimilate;
-  if (!options.exhale.empty() && fitting) return "--residuals and --assimilate belong to --landmarks";
-  if (options.show_landmarks && (options.out.empty() || options.landmarks.empty())) {
+  if (!options.data.exhale.empty() && fitting) return "--residuals and --assimilate belong to --landmarks";
+  if (options.show_landmarks && (options.out.empty() || options.data.landmarks.empty())) {
     return "--show-landmarks belongs to --landmarks with --out";
   }
   if (options.show_landmarks && options.fit.assimilate) {
@@ -115,9 +164,75 @@ std::string SourceOf(const FitCommandOptions& options, const std::vector<std::st
   return absl::StrJoin(names, " and ");
 }
 
+fit::FitProgress ShowOn(Progress& progress, const Context& context) {
+  return [&](double done, std::string_view stage) {
+    progress.SetDetail(std::string(stage));
+    progress.Update(done);
+    return !context.interruption->happened();
+  };
+}
+
+// Returns the files' names.
+std::string SourceOf(const FitCommandOptions& options, const std::vector<fit::MeasuredFile>& files) {
+  std::vector<std::string> names;
+  names.reserve(files.size());
+  for (const fit::MeasuredFile& file : files) names.push_back(file.name);
+  return SourceOf(options, names);  // without their folders
+}
+
+int WriteJoint(const FitCommandOptions& options, const fit::SceneLungs& lungs, const fit::JointFit& found,
+               const std::string& source) {
+  if (!options.out.empty()) {
+    const absl::Status status = WriteJointScene(options.out, lungs, found, options.fit, source, options.show_landmarks);
+    if (!status.ok()) return Fail(status);
+    std::cerr << "wrote " << options.out << "\n";
+  }
+  if (options.residuals.empty()) return kOk;
+  if (const absl::Status status = WriteResiduals(options.residuals, found.motion); !status.ok()) return Fail(status);
+  std::cerr << "wrote " << options.residuals << "\n";
+  return kOk;
+}
+
+// Fits to several kinds of data together.
+int FitAll(const Context& context, const FitCommandOptions& options) {
+  const auto files = ReadMeasured(options.data);
+  if (!files.ok()) return Fail(files.status());
+  const auto evidence = fit::ParseEvidence(*files);
+  if (!evidence.ok()) return Fail(evidence.status());
+  const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
+  if (!scene.ok()) return Fail(scene.status());
+  const auto lungs = ReadSceneLungs(*scene, options.data_dir);
+  if (!lungs.ok()) return FailFit(context, lungs.status());
+  absl::StatusOr<fit::JointFit> found = absl::UnknownError("");
+  {
+    Progress progress("fitting " + options.scene.scene, 1);
+    found = fit::FitJointly(lungs->templates, *evidence, options.fit, ShowOn(progress, context));
+  }
+  if (!found.ok()) return FailFit(context, found.status());
+  PrintDoubts(found->motion.registered);
+  if (context.json()) {
+    PrintJson(JointFitJson(*found, options.fit));
+  } else if (context.output == Output::kCsv) {
+    PrintJointFitCsv(*found);
+  } else {
+    PrintJointFit(*found, options.fit);
+  }
+  return WriteJoint(options, *lungs, *found, SourceOf(options, *files));
+}
+
+// Fits to landmarks of several times, by a column of their file.
+int FitPhases(const Context& context, const FitCommandOptions& options) {
+  if (const std::string fault = JointUsageFault(options); !fault.empty()) {
+    Fail(absl::InvalidArgumentError(fault));
+    return kUsage;
+  }
+  return FitAll(context, options);
+}
+
 int FitLandmarks(const Context& context, const FitCommandOptions& options) {
-  const auto landmarks = fit::ReadLandmarks(options.landmarks);
+  const auto landmarks = fit::ReadLandmarks(options.data.landmarks);
   if (!landmarks.ok()) return Fail(landmarks.status());
+  if (landmarks->phase.size() > 0) return FitPhases(context, options);
   const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
   if (!scene.ok()) return Fail(scene.status());
   const auto lungs = ReadSceneLungs(*scene, options.data_dir);
@@ -125,11 +240,7 @@ int FitLandmarks(const Context& context, const FitCommandOptions& options) {
   absl::StatusOr<fit::MotionFit> found = absl::UnknownError("");
   {
     Progress progress("fitting " + options.scene.scene, 1);
-    found = fit::FitMotion(lungs->templates, *landmarks, options.fit, [&](double done, std::string_view stage) {
-      progress.SetDetail(std::string(stage));
-      progress.Update(done);
-      return !context.interruption->happened();
-    });
+    found = fit::FitMotion(lungs->templates, *landmarks, options.fit, ShowOn(progress, context));
   }
   if (!found.ok()) return FailFit(context, found.status());
   PrintDoubts(found->registered);
@@ -142,7 +253,7 @@ int FitLandmarks(const Context& context, const FitCommandOptions& options) {
   }
   if (!options.out.empty()) {
     const absl::Status status = WriteFittedScene(options.out, *lungs, *found, options.fit,
-                                                 SourceOf(options, options.landmarks), options.show_landmarks);
+                                                 SourceOf(options, options.data.landmarks), options.show_landmarks);
     if (!status.ok()) return Fail(status);
     std::cerr << "wrote " << options.out << "\n";
   }
@@ -175,7 +286,7 @@ absl::Status WriteExpectedPerson(const FitCommandOptions& options, const fit::Sc
   const std::string number = options.descent ? absl::StrFormat("a descent of %.1f mm", *options.descent)
                                              : absl::StrFormat("a tidal volume of %.2f l", *options.tidal_volume);
   absl::Status written =
-      WriteExpectedScene(options.out, lungs, person, prediction, number, SourceOf(options, options.exhale));
+      WriteExpectedScene(options.out, lungs, person, prediction, number, SourceOf(options, options.data.exhale));
   if (written.ok()) std::cerr << "wrote " << options.out << "\n";
   return written;
 }
@@ -199,7 +310,7 @@ int PrintAndWriteExpected(const Context& context, const FitCommandOptions& optio
 }
 
 int FitOneNumber(const Context& context, const FitCommandOptions& options) {
-  const auto points = fit::ReadLandmarks(options.exhale);
+  const auto points = fit::ReadLandmarks(options.data.exhale);
   if (!points.ok()) return Fail(points.status());
   const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
   if (!scene.ok()) return Fail(scene.status());
@@ -226,7 +337,8 @@ int FitPerson(const Context& context, const FitCommandOptions& options) {
     Fail(absl::InvalidArgumentError(fault));
     return kUsage;
   }
-  return options.landmarks.empty() ? FitOneNumber(context, options) : FitLandmarks(context, options);
+  if (HasOtherKinds(options.data)) return FitAll(context, options);
+  return options.data.landmarks.empty() ? FitOneNumber(context, options) : FitLandmarks(context, options);
 }
 
 absl::Status CheckSceneFile(const std::string& file) {
@@ -241,19 +353,36 @@ absl::Status CheckSource(const std::string& text) {
   return absl::InvalidArgumentError("a source is at most 500 characters of ASCII");
 }
 
-void AddExhale(CLI::App& command, std::vector<std::string>& files, bool required) {
+void AddExhale(CLI::App& command, std::vector<std::string>& files) {
   CLI::Option* option = command.add_option(
       "--exhale", files, "points in the lungs at end exhale (.csv with x,y,z, .fcsv, .mrk.json) [mm, LPS]");
-  option->expected(1)->required(required);
+  option->expected(1);
 }
 
 void AddFiles(CLI::App& command, FitCommandOptions& options) {
+  constexpr int kMostFiles = 20;
+  const auto add = [&command](const char* name, std::vector<std::string>& files, const char* help) {
+    command.add_option(name, files, help)->expected(1, kMostFiles)->allow_extra_args(false);
+  };
+  add("--landmarks", options.data.landmarks,
+      "landmark pairs of end exhale and end inhale: one .csv, or two files of points (.fcsv, .mrk.json); other phases "
+      "by a column phase or FILE@PHASE (0 exhale, 1 inhale, 2 exhale)");
+  add("--surface", options.data.surfaces,
+      "surface of the diaphragm (.stl, .obj, .ply, .vtk, .vtp) [mm, LPS], FILE@inhale; FILE@exhale beside it takes the "
+      "template's shape out");
+  add("--lung-surface", options.data.lung_surfaces, "the same of the lungs");
+  add("--volume", options.data.volumes, "spirogram: .csv with time_s,volume_l");
+  add("--m-mode", options.data.m_modes,
+      "displacement of a dome over time, downwards: .csv with time_s,displacement_mm; FILE@right or FILE@left");
+  add("--markers", options.data.markers,
+      "markers on the chest wall: .csv with name,rest_x,...,moved_z, or tracks NAME_x,NAME_y,NAME_z [mm, LPS]");
   command
-      .add_option("--landmarks", options.landmarks,
-                  "landmark pairs of end exhale and end inhale: one .csv, or two files of points (.fcsv, .mrk.json)")
-      ->expected(1, 2)
+      .add_option("--error", options.data.errors,
+                  "standard error of a kind of data [mm, l]: landmarks=1.5, surface=6 (2.5 with a surface at exhale), "
+                  "lung-surface=6, volume=0.05, m-mode=2, markers=4")
+      ->check(ParsedBy(&CheckError))
       ->allow_extra_args(false);
-  AddExhale(command, options.exhale, false);
+  AddExhale(command, options.data.exhale);
   command.add_option("--residuals", options.residuals, "write measured, predicted and residual vectors (.csv, .vtp)");
   command.add_option("--expected", options.expected,
                      "write the expected motion of the points and its spread (.csv, .vtp)");
@@ -270,7 +399,16 @@ void AddFiles(CLI::App& command, FitCommandOptions& options) {
 CommandFunction SetUpRegister(CLI::App& command) {
   const auto options = std::make_shared<RegisterOptions>();
   AddScene(command, options->scene);
-  AddExhale(command, options->exhale, true);
+  AddExhale(command, options->exhale);
+  command
+      .add_option(
+          "--surface", options->surfaces,
+          "a surface at end exhale [mm, LPS]: lung-right=FILE, lung-left=FILE, and diaphragm=FILE to be judged by")
+      ->check(ParsedBy(&CheckStructure))
+      ->allow_extra_args(false);
+  command.add_option("--volume", options->volume,
+                     "label volume at end exhale (NIfTI, DICOM Segmentation) with the lungs");
+  AddLabels(command, options->labels);
   AddDataFolder(command, options->data_dir);
   command.add_option("--out", options->out, "write the person's lungs to this folder (lung-right.obj, lung-left.obj)");
   return Bind(&RegisterPerson, options);

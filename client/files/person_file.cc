@@ -32,6 +32,13 @@ absl::Status WriteFittedScene(const std::string& file, const fit::SceneLungs& lu
   return WriteScene(file, scene, command);
 }
 
+absl::Status WriteJointScene(const std::string& file, const fit::SceneLungs& lungs, const fit::JointFit& fit,
+                             const fit::FitOptions& options, const std::string& source, bool landmarks) {
+  const v1::Scene scene = fit::JointScene(SceneNameOf(file), source, lungs, fit, options.numbers, landmarks);
+  return WriteScene(file, scene,
+                    absl::StrCat("Written by phrenic fit --modes ", options.numbers, " from ", source, "."));
+}
+
 absl::Status WriteExpectedScene(const std::string& file, const fit::SceneLungs& lungs, const fit::Person& person,
                                 const fit::Prediction& prediction, const std::string& number,
                                 const std::string& source) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "absl/status/status.h"
+#include "server/fit/joint_fit.h"
 #include "server/fit/motion_fit.h"
 #include "server/fit/scene_lungs.h"
 
@@ -15,6 +16,10 @@ namespace phrenic::client {
 // written; INVALID_ARGUMENT if the motion is beyond the parameters' ranges.
 absl::Status WriteFittedScene(const std::string& file, const fit::SceneLungs& lungs, const fit::MotionFit& fit,
                               const fit::FitOptions& options, const std::string& source, bool landmarks);
+
+// The same for a fit to several kinds of data.
+absl::Status WriteJointScene(const std::string& file, const fit::SceneLungs& lungs, const fit::JointFit& fit,
+                             const fit::FitOptions& options, const std::string& source, bool landmarks);
 
 // Writes the motion that one number leads to expect; `number` says which, such as "a descent of 13 mm".
 absl::Status WriteExpectedScene(const std::string& file, const fit::SceneLungs& lungs, const fit::Person& person,

@@ -90,20 +90,6 @@ void PrintStrongestCorrelation(const fit::MotionFit& fit) {
                                fit.parameters[static_cast<size_t>(j)].name);
 }
 
-void PrintErrors(const fit::MotionFit& fit) {
-  Table models({"model", "numbers", "mean mm", "p95 mm"});
-  for (const fit::Baseline& each : fit.baselines) {
-    models.Add({each.name, absl::StrCat(each.numbers), Mm(each.held_out.mean), Mm(each.held_out.p95)});
-  }
-  models.Add(
-      {"elastic lungs that slide", absl::StrCat(fit.parameters.size()), Mm(fit.held_out.mean), Mm(fit.held_out.p95)});
-  if (fit.assimilated) {
-    models.Add({"with the smallest elastic deformation through the fitting points", "-", Mm(fit.assimilated->mean),
-                Mm(fit.assimilated->p95)});
-  }
-  models.Print(std::cout);
-}
-
 void PrintRegions(const fit::MotionFit& fit) {
   Table regions({"region", "points", "motion mm", "mean mm", "p95 mm"});
   for (const fit::RegionError& each : fit.regions) {
@@ -164,7 +150,7 @@ json TogetherJson(const fit::MotionStudy& study) {
 
 }  // namespace
 
-json RegistrationJson(const fit::RegisteredLungs& registered) {
+json RegistrationJson(const fit::RegisteredLungs& registered, const std::vector<fit::StructureResidual>& residuals) {
   json lungs = json::array();
   for (int side = 0; side < 2; ++side) {
     const fit::Registration& lung = registered.lungs[side];
@@ -175,7 +161,27 @@ json RegistrationJson(const fit::RegisteredLungs& registered) {
                      {"outside", lung.outside},
                      {"farthest_mm", RoundedMm(lung.farthest)}});
   }
-  return {{"gap_x_mm", RoundedMm(registered.gap)}, {"lungs", lungs}, {"doubts", registered.doubts}};
+  json result = {{"gap_x_mm", RoundedMm(registered.gap)}, {"lungs", lungs}, {"doubts", registered.doubts}};
+  for (const fit::StructureResidual& each : residuals) {
+    result["structures"].push_back({{"name", each.name},
+                                    {"shaped_by", each.shaped},
+                                    {"points", each.points},
+                                    {"mean_mm", RoundedMm(each.mean)},
+                                    {"p95_mm", RoundedMm(each.p95)}});
+  }
+  return result;
+}
+
+void PrintStructures(const std::vector<fit::StructureResidual>& residuals) {
+  if (residuals.empty()) return;
+  Table table({"structure", "points", "mean mm", "p95 mm", "of the person"});
+  for (const fit::StructureResidual& each : residuals) {
+    table.Add({each.name, absl::StrCat(each.points), Mm(each.mean), Mm(each.p95),
+               each.shaped ? "size and place along x, y, z; the shape is the template's"
+                           : "nothing: it judges the lungs' bases alone"});
+  }
+  std::cout << "\nregistered lungs against the person's surfaces:\n";
+  table.Print(std::cout);
 }
 
 void PrintRegistration(const fit::RegisteredLungs& registered) { RegistrationTable(registered).Print(std::cout); }
@@ -184,6 +190,20 @@ void PrintRegistrationCsv(const fit::RegisteredLungs& registered) { Registration
 
 void PrintDoubts(const fit::RegisteredLungs& registered) {
   for (const std::string& doubt : registered.doubts) std::cerr << "phrenic: warning: " << doubt << "\n";
+}
+
+void PrintErrors(const fit::MotionFit& fit) {
+  Table models({"model", "numbers", "mean mm", "p95 mm"});
+  for (const fit::Baseline& each : fit.baselines) {
+    models.Add({each.name, absl::StrCat(each.numbers), Mm(each.held_out.mean), Mm(each.held_out.p95)});
+  }
+  models.Add(
+      {"elastic lungs that slide", absl::StrCat(fit.parameters.size()), Mm(fit.held_out.mean), Mm(fit.held_out.p95)});
+  if (fit.assimilated) {
+    models.Add({"with the smallest elastic deformation through the fitting points", "-", Mm(fit.assimilated->mean),
+                Mm(fit.assimilated->p95)});
+  }
+  models.Print(std::cout);
 }
 
 json FitJson(const fit::MotionFit& fit, const fit::FitOptions& options) {

@@ -6,10 +6,14 @@
 
 #include "client/connection/context.h"
 #include "server/fit/motion_study.h"
+#include "server/fit/structures.h"
 
 namespace phrenic::client {
 
-nlohmann::json RegistrationJson(const fit::RegisteredLungs& registered);
+// With the distances from the person's structures, if there are any.
+nlohmann::json RegistrationJson(const fit::RegisteredLungs& registered,
+                                const std::vector<fit::StructureResidual>& residuals = {});
+void PrintStructures(const std::vector<fit::StructureResidual>& residuals);
 void PrintRegistration(const fit::RegisteredLungs& registered);
 void PrintRegistrationCsv(const fit::RegisteredLungs& registered);
 // On standard error.
@@ -18,6 +22,8 @@ void PrintDoubts(const fit::RegisteredLungs& registered);
 // The numbers of one fit; `options` are those it was made with.
 nlohmann::json FitJson(const fit::MotionFit& fit, const fit::FitOptions& options);
 void PrintFit(const fit::MotionFit& fit, const fit::FitOptions& options);
+// The held-out errors beside those of plain models.
+void PrintErrors(const fit::MotionFit& fit);
 // Rows: kind, name, numbers, points, value, standard_error, spread, mean, p95.
 void PrintFitCsv(const fit::MotionFit& fit);
 

@@ -1,6 +1,7 @@
 #include "server/fit/fit_message.h"
 
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <string>
 
@@ -73,6 +74,37 @@ void AddLungs(const RegisteredLungs& registered, v1::MotionFitResult& result) {
   }
 }
 
+void SetQuantity(const FittedQuantity& quantity, v1::FittedNumber& message) {
+  const double unit = quantity.number.per_unit;
+  message.set_name(quantity.number.name);
+  message.set_what(quantity.number.what);
+  message.set_unit(quantity.number.unit);
+  message.set_value(quantity.value / unit);
+  message.set_standard_error(quantity.standard_error / unit);
+  message.set_prior(quantity.number.mean / unit);
+  message.set_prior_sd(quantity.number.sd / unit);
+  message.set_determined(quantity.determined);
+  if (!std::isfinite(quantity.number.low)) return;
+  message.set_low(quantity.number.low / unit);
+  message.set_high(quantity.number.high / unit);
+  message.set_at_bound(quantity.at_bound);
+}
+
+void SetKind(const KindReport& report, v1::FitKind& message) {
+  const double unit = report.kind.per_unit;
+  message.set_kind(report.kind.kind);
+  message.set_source(report.kind.source);
+  message.set_unit(report.kind.unit);
+  message.set_error(report.kind.sd / unit);
+  message.set_fitting(report.fitting);
+  message.set_held_out(report.held_out);
+  message.set_rms_still(report.still / unit);
+  message.set_rms_before(report.before / unit);
+  message.set_rms_after(report.after / unit);
+  message.set_rms_held_out_still(report.held_out_still / unit);
+  message.set_rms_held_out(report.held_out_after / unit);
+}
+
 std::string BytesOf(const Points& points) {
   return {reinterpret_cast<const char*>(points.data()), sizeof(double) * static_cast<std::size_t>(points.size())};
 }
@@ -93,6 +125,15 @@ v1::MotionFitResult FitMessage(const MotionFit& fit, const FitOptions& options) 
   points.set_motion(BytesOf(fit.motion));
   points.set_predicted(BytesOf(fit.predicted));
   points.mutable_held_out()->Add(fit.halves.held_out.begin(), fit.halves.held_out.end());
+  return result;
+}
+
+v1::MotionFitResult JointFitMessage(const JointFit& fit, const FitOptions& options) {
+  v1::MotionFitResult result = FitMessage(fit.motion, options);
+  for (const FittedQuantity& each : fit.numbers) SetQuantity(each, *result.add_numbers());
+  for (const FittedQuantity& each : fit.derived) SetQuantity(each, *result.add_derived());
+  for (const KindReport& each : fit.kinds) SetKind(each, *result.add_kinds());
+  result.set_own_lungs(fit.own_lungs);
   return result;
 }
 

@@ -3,10 +3,12 @@
 #define PHRENIC_SERVER_FIT_FIT_REQUEST_H_
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "phrenic/v1/fit.pb.h"
+#include "server/fit/evidence.h"
 #include "server/fit/motion_fit.h"
 #include "server/fit/scene_lungs.h"
 
@@ -14,9 +16,13 @@ namespace phrenic::fit {
 
 inline constexpr int kMostPairs = 20'000;  // of one request: a fit of so many takes 3 s
 
+inline constexpr int kMostMeasuredFiles = 64;
+inline constexpr std::size_t kMostMeasuredBytes = 64 << 20;  // of all files together
+
 // A checked request.
 struct RequestedFit {
-  Landmarks landmarks;
+  Landmarks landmarks;               // fitted alone, if there is no evidence
+  std::optional<Evidence> evidence;  // of several kinds
   FitOptions options;
   std::string scene_name;
   std::string source;  // the files' names, for the scene's description
@@ -27,7 +33,7 @@ struct RequestedFit {
 // schema::Validate. Thread-safe, like FitRequested.
 absl::StatusOr<RequestedFit> ReadFitRequest(const v1::FitMotionRequest& request);
 
-// Fits. The errors of FitMotion.
+// Fits. The errors of FitMotion or FitJointly.
 absl::StatusOr<v1::MotionFitResult> FitRequested(const RequestedFit& requested, const SceneLungs& lungs,
                                                  const FitProgress& progress);
 

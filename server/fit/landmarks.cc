@@ -28,6 +28,7 @@ absl::StatusOr<Landmarks> PairLandmarks(const Landmarks& exhale, const Landmarks
 Landmarks Select(const Landmarks& landmarks, const std::vector<int>& indices) {
   Landmarks selected = {landmarks.exhale(Eigen::all, indices), Points(3, 0)};
   if (landmarks.paired()) selected.motion = landmarks.motion(Eigen::all, indices);
+  if (landmarks.phase.size() > 0) selected.phase = landmarks.phase(indices);
   return selected;
 }
 

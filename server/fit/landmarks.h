@@ -15,6 +15,8 @@ struct Landmarks {
   Points exhale;
   Points motion;                         // inhale - exhale; as many columns as `exhale`, or none
   std::vector<std::string> labels = {};  // of a Slicer file; empty otherwise
+  // Of each pair: 1 at the end of inspiration, less on the way there, up to 2 on the way back; empty: 1 for all.
+  Eigen::VectorXd phase = {};
 
   Eigen::Index size() const { return exhale.cols(); }
   bool paired() const { return motion.cols() > 0; }

@@ -14,6 +14,10 @@ absl::Status CheckPairs(const Landmarks& landmarks) {
     return absl::InvalidArgumentError(
         "the landmarks have no inhale points: add the columns inhale_x,inhale_y,inhale_z, or give a second file");
   }
+  if (landmarks.phase.size() > 0) {
+    return absl::InvalidArgumentError(
+        "the landmarks are of several phases: phrenic fit takes them, for one person; leave the column phase out here");
+  }
   if (!landmarks.motion.allFinite()) return absl::InvalidArgumentError("a coordinate of the landmarks is not finite");
   if (landmarks.size() >= kFewestPairs) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat("there are ", landmarks.size(), " landmark pairs; a fit needs ",

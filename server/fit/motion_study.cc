@@ -29,6 +29,17 @@ void PredictFromOthers(MotionStudy& study) {
   }
 }
 
+absl::StatusOr<MotionFit> FindOrFit(const LungTemplates& templates, const StudyCase& each, const FitOptions& options,
+                                    const FitProgress& progress, const KeptFits& kept) {
+  if (kept.find) {
+    if (std::optional<MotionFit> found = kept.find(each)) return *std::move(found);
+  }
+  absl::StatusOr<MotionFit> fit = FitMotion(templates, each.landmarks, options, progress);
+  if (!fit.ok() || !kept.keep) return fit;
+  if (absl::Status status = kept.keep(each, *fit); !status.ok()) return status;
+  return fit;
+}
+
 bool IsLandmarkFile(const std::string& name) {
   return absl::EndsWithIgnoreCase(name, ".csv") || absl::EndsWithIgnoreCase(name, ".fcsv") ||
          absl::EndsWithIgnoreCase(name, ".mrk.json");
@@ -37,7 +48,7 @@ bool IsLandmarkFile(const std::string& name) {
 }  // namespace
 
 absl::StatusOr<MotionStudy> StudyMotion(const LungTemplates& templates, const std::vector<StudyCase>& cases,
-                                        const FitOptions& options, const FitProgress& progress) {
+                                        const FitOptions& options, const FitProgress& progress, const KeptFits& kept) {
   if (cases.empty()) return absl::InvalidArgumentError("a study of motion needs one case at least");
   MotionStudy study = {options.numbers, {}, {}};
   for (size_t i = 0; i < cases.size(); ++i) {
@@ -45,7 +56,7 @@ absl::StatusOr<MotionStudy> StudyMotion(const LungTemplates& templates, const st
       return !progress || progress((static_cast<double>(i) + done) / static_cast<double>(cases.size()),
                                    cases[i].name + ", " + std::string(stage));
     };
-    absl::StatusOr<MotionFit> fit = FitMotion(templates, cases[i].landmarks, options, whole);
+    absl::StatusOr<MotionFit> fit = FindOrFit(templates, cases[i], options, whole, kept);
     if (!fit.ok()) return Named(cases[i].name, fit.status());
     study.people.push_back({cases[i].name, static_cast<int>(cases[i].landmarks.size()), *std::move(fit), {}});
   }

@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_FIT_MOTION_STUDY_H_
 #define PHRENIC_SERVER_FIT_MOTION_STUDY_H_
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,10 +30,18 @@ struct MotionStudy {
   PeopleMotion together;  // of all people
 };
 
-// Fits every case. The errors of FitMotion, with the case's name; INVALID_ARGUMENT without cases. `progress` as in
-// FitMotion, of the whole study. The same cases and options give the same bits.
+// Where the fits of finished people are kept. Either function may be empty.
+struct KeptFits {
+  std::function<std::optional<MotionFit>(const StudyCase&)> find;
+  std::function<absl::Status(const StudyCase&, const MotionFit&)> keep;
+};
+
+// Fits every case but those that `kept` finds, and keeps each when it is finished. The errors of FitMotion and of
+// `keep`, with the case's name; INVALID_ARGUMENT without cases. `progress` as in FitMotion, of the whole study. The
+// same cases and options give the same bits.
 absl::StatusOr<MotionStudy> StudyMotion(const LungTemplates& templates, const std::vector<StudyCase>& cases,
-                                        const FitOptions& options, const FitProgress& progress = {});
+                                        const FitOptions& options, const FitProgress& progress = {},
+                                        const KeptFits& kept = {});
 
 // Reads every file of pairs in a folder, by name: .csv, .fcsv and .mrk.json. NOT_FOUND if the folder does not exist or
 // has none; the errors of ReadLandmarks.

@@ -191,6 +191,24 @@ v1::Scene FittedScene(const std::string& name, const std::string& source, const 
   return scene;
 }
 
+v1::Scene JointScene(const std::string& name, const std::string& source, const SceneLungs& lungs, const JointFit& fit,
+                     int numbers, bool landmarks) {
+  std::vector<v1::Preset> presets = PresetsOf(fit.motion, BreathAmplitudes(numbers));
+  presets.front().set_description(absl::StrFormat("The breath of %d numbers fitted to %s.", numbers, source));
+  const std::string description = absl::StrFormat("%s and breath of a person: %d numbers fitted to %s.",
+                                                  fit.own_lungs ? "Lungs" : "Lungs of the template,", numbers, source);
+  v1::Scene scene =
+      PersonScene({name, description, lungs.bodies, fit.motion.registered, std::move(presets)}, lungs.templates);
+  v1::Parameters& parameters = *scene.mutable_parameters();
+  if (fit.breath_length > 0) {
+    parameters.set_breath_length(Rounded(fit.breath_length, 3));
+    parameters.set_inspiratory_share(Rounded(fit.inspiratory_share, 3));
+    parameters.set_pause_share(Rounded(fit.pause_share, 3));
+  }
+  if (landmarks) AddLandmarks(fit.motion, kMostLandmarks, scene);
+  return scene;
+}
+
 void AddLandmarks(const MotionFit& fit, int most, v1::Scene& scene) {
   AddLayer("landmarks", "Landmarks, fitted motion", "#2f6fb5", 1, scene);
   AddLayer("landmarks-inhale", "Landmarks at end inhale", "#d9a520", 1, scene);

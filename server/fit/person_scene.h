@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "phrenic/v1/scene.pb.h"
+#include "server/fit/joint_fit.h"
 #include "server/fit/motion_fit.h"
 #include "server/fit/scene_lungs.h"
 
@@ -39,6 +40,10 @@ v1::Scene PersonScene(const PersonBreath& breath, const LungTemplates& templates
 // (schema::Validate).
 v1::Scene FittedScene(const std::string& name, const std::string& source, const SceneLungs& lungs, const MotionFit& fit,
                       int numbers, bool landmarks);
+
+// Returns the scene of a fit to several kinds of data; its breath has the length and the shares of the recordings.
+v1::Scene JointScene(const std::string& name, const std::string& source, const SceneLungs& lungs, const JointFit& fit,
+                     int numbers, bool landmarks);
 
 // Adds the landmarks of the held-out half, at most `most` of them, evenly chosen: balls that move with the fitted
 // tissue, balls that stay where the landmarks are at end inhale, and a rod from each predicted to each true place.

@@ -18,8 +18,8 @@ using meshio::TextReader;
 
 constexpr std::size_t kMostLandmarkBytes = 64 << 20;  // some hundred thousand pairs
 
-// Where a CSV has the coordinates: exhale x, y, z, inhale x, y, z; -1: not there.
-using CsvColumns = std::array<int, 6>;
+// Where a CSV has the coordinates: exhale x, y, z, inhale x, y, z, and the phase; -1: not there.
+using CsvColumns = std::array<int, 7>;
 
 int CoordinateOf(std::string_view column) {
   constexpr std::array<std::string_view, 6> kNames = {"exhale_x", "exhale_y", "exhale_z",
@@ -27,11 +27,11 @@ int CoordinateOf(std::string_view column) {
   for (int i = 0; i < 6; ++i) {
     if (column == kNames[i] || (i < 3 && column == kNames[i].substr(7))) return i;
   }
-  return -1;
+  return column == "phase" ? 6 : -1;
 }
 
 absl::StatusOr<CsvColumns> ReadHeader(const TextReader& reader) {
-  CsvColumns columns = {-1, -1, -1, -1, -1, -1};
+  CsvColumns columns = {-1, -1, -1, -1, -1, -1, -1};
   int at = 0;
   for (const std::string_view cell : CellsOf(reader.Rest())) {
     const int coordinate = CoordinateOf(absl::AsciiStrToLower(std::string(cell)));
@@ -42,16 +42,20 @@ absl::StatusOr<CsvColumns> ReadHeader(const TextReader& reader) {
   const bool exhale = columns[0] >= 0 && columns[1] >= 0 && columns[2] >= 0;
   const int inhale =
       static_cast<int>(columns[3] >= 0) + static_cast<int>(columns[4] >= 0) + static_cast<int>(columns[5] >= 0);
+  if (exhale && inhale == 0 && columns[6] >= 0)
+    return reader.Error("a column phase belongs to pairs: inhale_x is missing");
   if (exhale && (inhale == 0 || inhale == 3)) return columns;
   return reader.Error(
       "the first line must name the columns exhale_x,exhale_y,exhale_z,inhale_x,inhale_y,inhale_z (points alone: "
       "x,y,z)");
 }
 
-// Reads a row's numbers in mm: 3 or 6.
-absl::Status ReadRow(const TextReader& reader, const CsvColumns& columns, Eigen::Matrix<double, 6, 1>& mm) {
+// A row: 3 or 6 coordinates in mm, and the phase if there is one.
+using CsvNumbers = Eigen::Matrix<double, 7, 1>;
+
+absl::Status ReadRow(const TextReader& reader, const CsvColumns& columns, CsvNumbers& mm) {
   const std::vector<std::string_view> cells = CellsOf(reader.Rest());
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 7; ++i) {
     if (columns[i] < 0) continue;
     const auto at = static_cast<size_t>(columns[i]);
     if (at >= cells.size()) {
@@ -79,21 +83,27 @@ bool ReadSpace(std::string_view comment, bool& ras) {
 class CsvRows {
  public:
   absl::Status Read(const TextReader& reader, const CsvColumns& columns, bool ras) {
-    Eigen::Matrix<double, 6, 1> mm = Eigen::Matrix<double, 6, 1>::Zero();
+    CsvNumbers mm = CsvNumbers::Zero();
     if (absl::Status status = ReadRow(reader, columns, mm); !status.ok()) return status;
+    if (columns[6] >= 0 && !(mm[6] > 0 && mm[6] < 2)) {
+      return reader.Error("the phase must be above 0 (end exhale) and below 2 (the next end exhale); 1 is end inhale");
+    }
+    if (columns[6] >= 0) phase_.push_back(mm[6]);
     absl::Status status = AppendPoint(mm.head<3>(), ras, exhale_);
-    if (status.ok() && columns[3] >= 0) status = AppendPoint(mm.tail<3>(), ras, inhale_);
+    if (status.ok() && columns[3] >= 0) status = AppendPoint(mm.segment<3>(3), ras, inhale_);
     return status.ok() ? status : reader.Error(std::string(status.message()));
   }
 
   Landmarks Take() const {
     Landmarks landmarks = {ColumnsOf(exhale_), ColumnsOf(inhale_)};
     if (landmarks.paired()) landmarks.motion -= landmarks.exhale;
+    landmarks.phase = Eigen::Map<const Eigen::VectorXd>(phase_.data(), static_cast<Eigen::Index>(phase_.size()));
     return landmarks;
   }
 
  private:
   std::vector<Eigen::Vector3d> exhale_, inhale_;
+  std::vector<double> phase_;
 };
 
 absl::StatusOr<Landmarks> ParseCsv(std::string_view name, std::string_view bytes) {

@@ -3,8 +3,8 @@
 // A file is CSV, 3D Slicer's .fcsv or .mrk.json. Coordinates are in mm and LPS (+x left, +y posterior, +z superior),
 // unless the file declares RAS: "# space=ras" in a CSV, CoordinateSystem in an .fcsv, coordinateSystem in a .mrk.json.
 // A CSV has a header that names its columns, in any order: exhale_x, exhale_y, exhale_z and, for pairs, inhale_x,
-// inhale_y, inhale_z; points alone may be called x, y, z. Other columns are ignored, and so are lines that begin with
-// #.
+// inhale_y, inhale_z; points alone may be called x, y, z. A column phase gives pairs of several times
+// (Landmarks::phase). Other columns are ignored, and so are lines that begin with #.
 #ifndef PHRENIC_SERVER_FIT_READ_LANDMARKS_H_
 #define PHRENIC_SERVER_FIT_READ_LANDMARKS_H_
 

@@ -108,6 +108,12 @@ TEST(Fit, InvalidRequestsNameTheOptionOrTheRemedy) {
     EXPECT_EQ(outcome.out, "");
   };
   expect({}, 2, "give --landmarks with pairs");
+  expect({"--exhale", points, "--volume", points, "--descent", "9"}, 2, "belong to --exhale alone");
+  expect({"--landmarks", points, "--error", "colour=1"}, 2, "a kind of landmarks, surface");
+  expect({"--landmarks", points, "--error", "volume=1"}, 1, "no --volume is given");
+  expect({"--exhale", points, "--volume", points}, 1, "the first line must name the columns time_s and volume_l");
+  expect({"--exhale", points, "--m-mode", points + "@up"}, 1, "comes @right or @left");
+  expect({"--exhale", points, "--surface", Scratch("none.stl") + "@inhale"}, 1, "cannot read the file of --surface");
   expect({"--exhale", points}, 2, "--exhale needs one number");
   expect({"--exhale", points, "--descent", "9", "--tidal-volume", "0.4"}, 2, "--exhale needs one number");
   expect({"--exhale", points, "--descent", "-3"}, 2, "--descent");
@@ -121,6 +127,58 @@ TEST(Fit, InvalidRequestsNameTheOptionOrTheRemedy) {
   expect({"--landmarks", WriteScratch("bad.csv", "a,b\n1,2\n")}, 1, "bad.csv:1: the first line must name the columns");
   expect({"--landmarks", Scratch("none.csv")}, 1, "check the path");
   expect({"--landmarks", WriteScratch("few.csv", EggPerson(150))}, 1, "a fit needs 200");
+}
+
+// Quiet breaths of 4 s, of this depth.
+std::string RecordedBreaths(const std::string& column, double depth) {
+  std::string text = "time_s," + column + "\n";
+  for (int i = 0; i < 600; ++i) {
+    char line[80];
+    std::snprintf(line, sizeof line, "%.2f,%.5f\n", 0.04 * i, depth * (1 - std::cos(2 * M_PI * 0.04 * i / 4)) / 2);
+    text += line;
+  }
+  return text;
+}
+
+TEST(Fit, OfSeveralKindsTellsHowWellEachIsMet) {
+  const std::string pairs = WriteScratch("pairs.csv", EggPerson(700)),
+                    spiro = WriteScratch("spiro.csv", RecordedBreaths("volume_l", 0.4)),
+                    m_mode = WriteScratch("mmode.csv", RecordedBreaths("displacement_mm", 9)),
+                    scene = Scratch("anna.textproto");
+  const Outcome fit = FitCommand({"--landmarks", pairs, "--volume", spiro, "--m-mode", m_mode + "@left", "--error",
+                                  "m-mode=1.5", "--out", scene, "--residuals", Scratch("left.csv"), "-o", "json"});
+  ASSERT_EQ(fit.code, 0) << fit.err;
+  const auto json = fit.json();
+  ASSERT_EQ(json["kinds"].size(), 5u);
+  EXPECT_EQ(json["kinds"][0]["kind"], "landmarks");
+  EXPECT_LT(json["kinds"][0]["rms_after"], json["kinds"][0]["rms_still"]);
+  EXPECT_GT(json["kinds"][0]["held_out"], 300);
+  EXPECT_EQ(json["kinds"][3]["error"], 1.5);
+  EXPECT_EQ(json["fitted"][0]["unit"], "mm");
+  EXPECT_LT(json["fitted"][0]["standard_error"], json["fitted"][0]["prior_sd"]);
+  EXPECT_EQ(json["derived"][0]["name"], "tidal volume");
+  EXPECT_EQ(json["baselines"].size(), 5u);
+  EXPECT_LT(json["held_out_mean_mm"], json["baselines"][0]["mean_mm"]);
+  const Outcome run = Phrenic({"run", scene, "--seconds", "2", "-o", "json"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(ReadAll(scene), HasSubstr("breath_length: 4"));
+}
+
+TEST(Register, ToSurfacesTellsHowFarTheyAre) {
+  const std::string points = WriteScratch("exhale.csv", EggPerson(500)), lungs = Scratch("lungs");
+  ASSERT_EQ(Phrenic({"register", "thorax", "--resolution", "12", "--exhale", points, "--out", lungs}).code, 0);
+  const std::string right = lungs + "/lung-right.obj", left = lungs + "/lung-left.obj";
+  const Outcome outcome = Phrenic({"register", "thorax", "--resolution", "12", "--surface", "lung-right=" + right,
+                                   "--surface", "lung-left=" + left, "-o", "json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  ASSERT_EQ(outcome.json()["structures"].size(), 2u);
+  EXPECT_LT(outcome.json()["structures"][0]["mean_mm"], 4);
+  const Outcome swapped = Phrenic({"register", "thorax", "--resolution", "12", "--surface", "lung-right=" + left,
+                                   "--surface", "lung-left=" + right});
+  EXPECT_EQ(swapped.code, 1);
+  EXPECT_THAT(swapped.err, HasSubstr("in LPS the left has the larger x"));
+  EXPECT_EQ(Phrenic({"register", "thorax"}).code, 2);
+  EXPECT_EQ(Phrenic({"register", "thorax", "--surface", "liver=" + left}).code, 2);
 }
 
 TEST(Register, WritesTheLungsThatHoldThePoints) {
@@ -148,6 +206,13 @@ TEST(StudyMotion, MakesATableAndAPage) {
   EXPECT_THAT(study.out, HasSubstr("\na,"));
   EXPECT_THAT(study.out, HasSubstr("\nmean,"));
   EXPECT_THAT(ReadAll(Scratch("motion.html")), HasSubstr("<h2>b</h2>"));
+  const std::vector<std::string> keeping = {
+      "study", "motion", "--cases", Scratch("people"), "--resolution", "12", "--keep", Scratch("kept"), "-o", "csv"};
+  const Outcome first = Phrenic(keeping), second = Phrenic(keeping);
+  EXPECT_EQ(first.out, study.out);
+  EXPECT_EQ(second.out, study.out);
+  EXPECT_EQ(first.err.find("kept from before"), std::string::npos);
+  EXPECT_THAT(second.err, HasSubstr("kept from before: 2 of 2 people"));
   const Outcome none = Phrenic({"study", "motion", "--cases", Scratch("nowhere")});
   EXPECT_EQ(none.code, 1);
   EXPECT_THAT(none.err, HasSubstr("cannot read the folder"));

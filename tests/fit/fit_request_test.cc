@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "absl/strings/str_cat.h"
+#include "tests/fit/person_truth.h"
 #include "tests/fit/synthetic_person.h"
 
 namespace phrenic::fit {
@@ -138,6 +139,69 @@ TEST(FitRequest, SendsTheNumbersOfTheFit) {
   EXPECT_THAT(result->scene().description(), HasSubstr("made up"));
   const auto cancelled = FitRequested(requested, lungs, [](double, auto) { return false; });
   EXPECT_EQ(cancelled.status().code(), absl::StatusCode::kCancelled);
+}
+
+v1::MeasuredFile& AddMeasured(v1::MeasuredKind kind, const fit::MeasuredFile& file, v1::FitMotionRequest& request) {
+  v1::MeasuredFile& sent = *request.add_measured();
+  sent.set_kind(kind);
+  sent.set_name(file.name);
+  sent.set_content(file.bytes);
+  return sent;
+}
+
+TEST(FitRequest, OfSeveralKindsSendsTheNumbersOfTheJointFit) {
+  const PersonTruth& truth = PersonTruth::One();
+  v1::FitMotionRequest request;
+  request.mutable_source()->set_name("thorax");
+  AddMeasured(v1::MEASURED_KIND_EXHALE, truth.Exhale(), request);
+  AddMeasured(v1::MEASURED_KIND_LANDMARKS, truth.Landmarks(0.001), request).set_error(2);
+  AddMeasured(v1::MEASURED_KIND_VOLUME, truth.Volume(), request);
+  const auto requested = ReadFitRequest(request);
+  ASSERT_TRUE(requested.ok()) << requested.status();
+  EXPECT_EQ(requested->source, "exhale.csv, pairs-1.csv, spiro.csv");
+  const SceneLungs lungs{{NamedLung(kRight), NamedLung(kLeft)}, GeneratedLungs()};
+  const auto result = FitRequested(*requested, lungs, {});
+  ASSERT_TRUE(result.ok()) << result.status();
+  const auto fit = FitJointly(GeneratedLungs(), *requested->evidence, {});
+  ASSERT_TRUE(fit.ok()) << fit.status();
+  ASSERT_EQ(result->numbers_size(), static_cast<int>(fit->numbers.size()));
+  EXPECT_EQ(result->numbers(2).value(), fit->numbers[2].value / 1e-3);
+  EXPECT_EQ(result->kinds_size(), 3);
+  EXPECT_EQ(result->kinds(0).error(), 2);
+  EXPECT_EQ(result->parameters_size(), 8);
+  EXPECT_EQ(result->derived(0).unit(), "l");
+  EXPECT_TRUE(result->own_lungs());
+  EXPECT_NEAR(result->scene().parameters().breath_length(), 4.4, 0.1);
+}
+
+TEST(FitRequest, OfAColumnPhaseIsOfSeveralTimes) {
+  v1::FitMotionRequest request =
+      RequestOf("exhale_x,exhale_y,exhale_z,inhale_x,inhale_y,inhale_z,phase\n1,2,3,1,2,1,0.5\n1,2,3,1,2,-1,1\n");
+  const auto requested = ReadFitRequest(request);
+  ASSERT_TRUE(requested.ok()) << requested.status();
+  ASSERT_TRUE(requested->evidence.has_value());
+  EXPECT_EQ(requested->evidence->landmarks.phase[0], 0.5);
+  EXPECT_EQ(requested->source, "pairs.csv");
+  request.set_assimilate(true);
+  EXPECT_THAT(RefusalOf(request), HasSubstr("assimilate: belongs to landmarks of one time"));
+  request = RequestOf("exhale_x,exhale_y,exhale_z,inhale_x,inhale_y,inhale_z,phase\n1,2,3,1,2,1,2\n");
+  EXPECT_THAT(RefusalOf(request), HasSubstr("pairs.csv:2: the phase must be above 0"));
+}
+
+TEST(FitRequest, OfSeveralKindsIsRefusedByFileOrByField) {
+  v1::FitMotionRequest request = RequestOf(PairLines(3));
+  AddMeasured(v1::MEASURED_KIND_VOLUME, PersonTruth::One().Volume(), request);
+  EXPECT_THAT(RefusalOf(request), HasSubstr("landmarks: give them among measured"));
+  request.clear_landmarks();
+  request.set_assimilate(true);
+  EXPECT_THAT(RefusalOf(request), HasSubstr("assimilate: belongs to landmarks alone"));
+  request.set_assimilate(false);
+  request.mutable_measured(0)->set_content("time_s,volume_l\n1,x\n");
+  EXPECT_THAT(RefusalOf(request), HasSubstr("spiro.csv:2: \"x\" in column 2"));
+  request.mutable_measured(0)->set_kind(v1::MEASURED_KIND_UNSPECIFIED);
+  EXPECT_THAT(RefusalOf(request), HasSubstr("measured[0].kind: is unknown"));
+  request.clear_measured();
+  EXPECT_THAT(RefusalOf(request), HasSubstr("landmarks: is required, or measured"));
 }
 
 TEST(SceneLungs, AreClosedAndOfThisSize) {

@@ -12,9 +12,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const char* name : {"fuzz.csv", "fuzz.fcsv", "fuzz.mrk.json"}) {
     const auto landmarks = phrenic::fit::ParseLandmarks(name, bytes);
     if (!landmarks.ok()) continue;
-    const auto& [exhale, motion, labels] = *landmarks;
+    const auto& [exhale, motion, labels, phase] = *landmarks;
     if (exhale.cols() == 0 || !exhale.allFinite() || !motion.allFinite()) std::abort();
     if (motion.cols() != 0 && motion.cols() != exhale.cols()) std::abort();
+    if (phase.size() != 0 && (phase.size() != motion.cols() || !phase.allFinite())) std::abort();
     const auto sides = phrenic::fit::FindSides(exhale);
     if (sides.ok() && static_cast<Eigen::Index>(sides->of.size()) != exhale.cols()) std::abort();
   }

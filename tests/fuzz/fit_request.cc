@@ -12,6 +12,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!request.ParseFromArray(data, static_cast<int>(size)) || !phrenic::schema::Validate(request).ok()) return 0;
   const auto requested = phrenic::fit::ReadFitRequest(request);
   if (!requested.ok()) return 0;
+  if (requested->evidence) {
+    if (requested->evidence->landmarks.size() > phrenic::fit::kMostPairs || requested->source.empty()) std::abort();
+    return 0;
+  }
   const auto& landmarks = requested->landmarks;
   if (landmarks.size() == 0 || landmarks.size() > phrenic::fit::kMostPairs) std::abort();
   if (!landmarks.exhale.allFinite() || !landmarks.motion.allFinite()) std::abort();

@@ -98,6 +98,41 @@ class FitTest(SessionTest):
             with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "NAME.textproto"):
                 found.to_scene(Path(folder, "anna.txt"))
 
+    def test_other_kinds_have_the_numbers_of_the_command(self):
+        with tempfile.TemporaryDirectory() as folder:
+            write(folder, "pairs.csv", pairs())
+            times = np.arange(600) / 25
+            volumes = 0.4 * (1 - np.cos(2 * np.pi * times / 4)) / 2
+            rows = "".join(f"{t},{v}\n" for t, v in zip(times, volumes))
+            Path(folder, "spiro.csv").write_text("time_s,volume_l\n" + rows)
+            metres = "".join(f"{t},{v / 1000}\n" for t, v in zip(times, volumes))
+            Path(folder, "mmode.csv").write_text("time_s,displacement_mm\n" + metres)
+            words = "fit thorax --exhale pairs.csv --volume spiro.csv --error volume=0.02 --out person.textproto -o json"
+            done = subprocess.run([program("phrenic"), *words.split()], cwd=folder, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            expected = json.loads(done.stdout)
+            found = phrenic.fit(exhale=Path(folder, "pairs.csv"), volume=Path(folder, "spiro.csv"),
+                                errors={"volume": 0.02})  # fmt: skip
+            with phrenic.Session("thorax") as session:
+                again = session.fit(exhale=Path(folder, "pairs.csv"), volume=Path(folder, "spiro.csv"),
+                                    errors={"volume": 0.02})  # fmt: skip
+            with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "mmode.csv: the breaths are .* mm deep"):
+                phrenic.fit(m_mode=str(Path(folder, "mmode.csv")) + "@left")
+            with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "errors: 'colour' is no kind"):
+                phrenic.fit(volume=Path(folder, "spiro.csv"), errors={"colour": 1})
+        for name, key in (("numbers", "fitted"), ("derived", "derived")):
+            for mine, theirs in zip(getattr(found, name), expected[key]):
+                self.assertEqual(mine["name"], theirs["name"])
+                self.assertAlmostEqual(mine["value"], theirs["value"], places=5)
+                self.assertAlmostEqual(mine["standard_error"], theirs["standard_error"], places=5)
+        self.assertEqual([row["kind"] for row in found.kinds], ["volume", "breath lengths"])
+        self.assertEqual(list(again.numbers["value"]), list(found.numbers["value"]))
+        self.assertAlmostEqual(found.scene.parameters.breath_length, 4, places=1)
+
+    def test_neither_landmarks_nor_other_data_is_refused(self):
+        with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "landmarks: is required, or measured"):
+            phrenic.fit()
+
     def test_what_is_wrong_is_named_by_file_and_line_or_field(self):
         invalid, unfit = phrenic.errors.InvalidArgument, phrenic.errors.FailedPrecondition
         with tempfile.TemporaryDirectory() as folder:

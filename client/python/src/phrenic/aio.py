@@ -240,7 +240,7 @@ class Session(SessionOperations):
         """As phrenic.Session.physiology."""
         return await self._do(jobs.physiology(self._source, presets, progress))
 
-    async def fit(self, landmarks: Landmarks, progress: jobs.Progress = None, **options: Any) -> Fit:
+    async def fit(self, landmarks: Optional[Landmarks] = None, progress: jobs.Progress = None, **options: Any) -> Fit:
         """As phrenic.Session.fit."""
         return await self._do(fitted(self._source, landmarks, options, progress))
 

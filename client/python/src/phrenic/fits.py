@@ -1,6 +1,7 @@
-"""A person's lungs and breath from landmarks, fitted on the server with the numbers of `phrenic fit`.
+"""A person's lungs and breath from what there is of it, fitted on the server with the numbers of `phrenic fit`.
 
     found = phrenic.fit("pairs.csv", modes=12)
+    found = phrenic.fit(exhale="points.csv", surfaces=["dome.stl@inhale"], volume="spirogram.csv")
     found.held_out_mm, found.parameters.where(determined=False)
     with phrenic.Session(found.scene) as s: ...
 """
@@ -22,7 +23,7 @@ from .jobs import Progress
 from .names import fill, row
 from .operations import Scene, source_of
 from .table import Table
-from .v1 import fit_pb2, scene_pb2, session_pb2
+from .v1 import fit_pb2, geometry_pb2, scene_pb2, session_pb2
 
 if TYPE_CHECKING:
     from .server import Server
@@ -58,6 +59,12 @@ class Fit:
     """The same by the fit [m]."""
     held_out: np.ndarray
     """Indices of the landmarks that were not fitted."""
+    numbers: Table
+    """Of a fit to several kinds: every number with unit, standard_error, prior, prior_sd, low, high, determined."""
+    derived: Table
+    """What follows from them: tidal volume, descents, abdominal share, rate."""
+    kinds: Table
+    """How well each kind of data is met: data, error, rms_still, rms_before, rms_after, rms_held_out."""
 
     @property
     def held_out_mm(self) -> float:
@@ -84,7 +91,7 @@ class Fit:
 
     def to_json(self, path: Union[str, Path, None] = None) -> str:
         """Returns the numbers as JSON, without landmarks and scene, and writes them to `path`."""
-        tables = {name: list(getattr(self, name)) for name in ("parameters", "baselines", "regions", "lungs")}
+        tables = {name: list(getattr(self, name)) for name in ("parameters", "baselines", "regions", "lungs", "numbers", "derived", "kinds")}
         errors = {name: row(getattr(self.message, name)) for name in ("fitting", "held_out", "assimilated")
                   if self.message.HasField(name)}  # fmt: skip
         numbers = {**row(self.message), "correlation": self.correlation.tolist(), **errors, **tables}
@@ -94,10 +101,30 @@ class Fit:
         return text
 
 
+Files = Union[None, str, Path, Sequence[Union[str, Path]]]
+
+KINDS = {"landmarks": fit_pb2.MEASURED_KIND_LANDMARKS, "exhale": fit_pb2.MEASURED_KIND_EXHALE,
+         "surface": fit_pb2.MEASURED_KIND_DIAPHRAGM, "lung-surface": fit_pb2.MEASURED_KIND_LUNGS,
+         "volume": fit_pb2.MEASURED_KIND_VOLUME, "m-mode": fit_pb2.MEASURED_KIND_M_MODE,
+         "markers": fit_pb2.MEASURED_KIND_MARKERS}  # fmt: skip
+
+
+OPTIONS = {"exhale": "exhale", "surfaces": "surface", "lung_surfaces": "lung-surface", "volume": "volume",
+           "m_mode": "m-mode", "markers": "markers"}  # fmt: skip
+"""The options of `fit` that take files, and their kinds."""
+
+
 def fit(
-    landmarks: Landmarks,
+    landmarks: Optional[Landmarks] = None,
     scene: Scene = "thorax",
     *,
+    exhale: Files = None,
+    surfaces: Files = None,
+    lung_surfaces: Files = None,
+    volume: Files = None,
+    m_mode: Files = None,
+    markers: Files = None,
+    errors: Optional[Mapping[str, float]] = None,
     modes: int = 8,
     split: int = 1,
     assimilate: bool = False,
@@ -110,21 +137,32 @@ def fit(
     """Fits a person's breath to landmarks, on the server; the numbers are those of `phrenic fit` with the same landmarks
     and options. `scene`: its lungs are moved onto the person's. `modes`: 8 or 12 numbers. `split`: seed of the half that
     is fitted. `assimilate`: adds the smallest elastic deformation. `scene_name`: of the person's scene, which has up to
-    400 landmarks with `show_landmarks`. InvalidArgument names the file and the line. A `progress` that raises ends the fit."""
+    400 landmarks with `show_landmarks`. InvalidArgument names the file and the line. A `progress` that raises ends the fit.
+
+    Other kinds of data are fitted together with the landmarks, from people's breaths as a prior: `exhale`, points that
+    give the lungs their shape; `surfaces` of the diaphragm and `lung_surfaces`, "FILE@inhale" or "FILE@exhale"; `volume`,
+    a spirogram; `m_mode`, "FILE@right" or "FILE@left"; `markers` on the chest; landmarks of other times, "FILE@0.5".
+    `errors`: the standard error of a kind, {"volume": 0.05} [l, mm]."""
     if server is None:
         from .server import default_server
 
         server = default_server()
     options = {"modes": modes, "split": split, "assimilate": assimilate, "scene_name": scene_name,
                "show_landmarks": show_landmarks}  # fmt: skip
+    options |= {"exhale": exhale, "surfaces": surfaces, "lung_surfaces": lung_surfaces, "volume": volume,
+                "m_mode": m_mode, "markers": markers, "errors": errors}  # fmt: skip
     return server.connection.run(fitted(source_of(scene, resolution_mm), landmarks, options, progress))
 
 
 def fitted(
-    source: session_pb2.SceneSource, landmarks: Landmarks, options: Mapping[str, Any], progress: Progress
+    source: session_pb2.SceneSource, landmarks: Optional[Landmarks], options: Mapping[str, Any], progress: Progress
 ) -> Operation[Fit]:
-    """Fits, and returns the result."""
-    request = fill(fit_pb2.FitMotionRequest(source=source, landmarks=_files(landmarks)), options)
+    """Fits, and returns the result. `options`: those of `fit`."""
+    given = {kind: options.get(name) for name, kind in OPTIONS.items()}
+    measured = _measured(landmarks, given, options.get("errors") or {})
+    files = [] if landmarks is None or measured else _files(landmarks)
+    fields = {name: value for name, value in options.items() if name not in OPTIONS and name != "errors"}
+    request = fill(fit_pb2.FitMotionRequest(source=source, landmarks=files, measured=measured), fields)
     results: list[fit_pb2.MotionFitResult] = []
 
     def note(event: fit_pb2.FitMotionResponse) -> None:
@@ -135,6 +173,60 @@ def fitted(
 
     yield Call("FitService.FitMotion", request, LONG, note)
     return _fit_of(results[-1])
+
+
+def _measured(
+    landmarks: Optional[Landmarks], given: Mapping[str, Files], errors: Mapping[str, float]
+) -> list[fit_pb2.MeasuredFile]:
+    """Returns the files of a fit to several kinds; none if there are landmarks at end inhale alone."""
+    for kind in errors:
+        if kind not in KINDS:
+            raise InvalidArgument(f"errors: {kind!r} is no kind of data: there are {', '.join(KINDS)}")
+    files: list[fit_pb2.MeasuredFile] = []
+    for kind, paths in given.items():
+        files += [_measured_file(kind, str(path), errors) for path in _listed(paths)]
+    pairs = [] if landmarks is None or isinstance(landmarks, np.ndarray) else [str(path) for path in _listed(landmarks)]
+    phased = any(_suffix(path)[1] for path in pairs)
+    if not files and not phased and not errors:
+        return []
+    if isinstance(landmarks, np.ndarray):
+        content = _files(landmarks)[0].content
+        files.append(fit_pb2.MeasuredFile(kind=KINDS["landmarks"], name="landmarks", content=content))
+        if "landmarks" in errors:
+            files[-1].error = errors["landmarks"]
+    return files + [_measured_file("landmarks", path, errors) for path in pairs]
+
+
+def _listed(paths: Any) -> list[Any]:
+    if paths is None:
+        return []
+    return [paths] if isinstance(paths, (str, Path)) else list(paths)
+
+
+def _suffix(text: str) -> tuple[str, str]:
+    """Returns a file and what stands behind its "@"."""
+    path, at, suffix = text.rpartition("@")
+    if at and (suffix in ("inhale", "exhale", "right", "left") or suffix.replace(".", "", 1).isdigit()):
+        return path, suffix
+    return text, ""
+
+
+def _measured_file(kind: str, text: str, errors: Mapping[str, float]) -> fit_pb2.MeasuredFile:
+    name, suffix = _suffix(text)
+    path = Path(name)
+    try:
+        file = fit_pb2.MeasuredFile(kind=KINDS[kind], name=path.name, content=path.read_bytes())
+    except OSError as error:
+        raise InvalidArgument(f"{path}: {error.strerror}") from None
+    if kind in errors:
+        file.error = errors[kind]
+    if suffix in ("right", "left"):
+        file.side = geometry_pb2.SIDE_LEFT if suffix == "left" else geometry_pb2.SIDE_RIGHT
+    elif suffix in ("inhale", "exhale"):
+        file.at_exhale = suffix == "exhale"
+    elif suffix:
+        file.phase = float(suffix)
+    return file
 
 
 def _files(landmarks: Landmarks) -> list[fit_pb2.LandmarkFile]:
@@ -161,5 +253,6 @@ def _fit_of(result: fit_pb2.MotionFitResult) -> Fit:
     return Fit(
         result, Table.of(result.parameters), np.array(result.correlation).reshape(count, count),
         Table.of(result.baselines), Table.of(result.regions), Table.of(result.lungs), *places,
-        np.array(result.points.held_out, dtype=int),
+        np.array(result.points.held_out, dtype=int), Table.of(result.numbers), Table.of(result.derived),
+        Table.of(result.kinds),
     )  # fmt: skip

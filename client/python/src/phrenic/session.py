@@ -233,9 +233,10 @@ class Session(SessionOperations):
         """Simulates the scene's breathing presets (a minute a preset) and compares them with published ranges."""
         return self._do(jobs.physiology(self._source, presets, progress))
 
-    def fit(self, landmarks: Landmarks, progress: jobs.Progress = None, **options: Any) -> Fit:
-        """Fits a person's breath to landmarks with the lungs of this session's scene, as phrenic.fit does; the session
-        itself does not move. `options`: modes, split, assimilate, scene_name, show_landmarks."""
+    def fit(self, landmarks: Optional[Landmarks] = None, progress: jobs.Progress = None, **options: Any) -> Fit:
+        """Fits a person's breath to landmarks or other data with the lungs of this session's scene, as phrenic.fit does;
+        the session itself does not move. `options`: modes, split, assimilate, scene_name, show_landmarks, and the kinds of
+        data: exhale, surfaces, lung_surfaces, volume, m_mode, markers, errors."""
         return self._do(fitted(self._source, landmarks, options, progress))
 
     def compare(self, other: Union["Session", str, Path], body: str = "", **options: Any) -> jobs.Comparison:

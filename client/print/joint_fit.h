@@ -1,0 +1,20 @@
+// Fits to several kinds of a person's data as tables, JSON and CSV.
+#ifndef PHRENIC_CLIENT_PRINT_JOINT_FIT_H_
+#define PHRENIC_CLIENT_PRINT_JOINT_FIT_H_
+
+#include <nlohmann/json.hpp>
+
+#include "server/fit/joint_fit.h"
+
+namespace phrenic::client {
+
+// The fields of FitJson that there are, and "fitted", "derived", "kinds" and "own_lungs". `options` are those of the
+// fit.
+nlohmann::json JointFitJson(const fit::JointFit& fit, const fit::FitOptions& options);
+void PrintJointFit(const fit::JointFit& fit, const fit::FitOptions& options);
+// Rows: kind, name, unit, data, value, standard_error, prior, prior_sd, still, before, after, held_out.
+void PrintJointFitCsv(const fit::JointFit& fit);
+
+}  // namespace phrenic::client
+
+#endif  // PHRENIC_CLIENT_PRINT_JOINT_FIT_H_
