@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <optional>
 #include <set>
 
 #include "absl/strings/str_cat.h"
@@ -12,6 +13,7 @@
 #include "client/commands/commands.h"
 #include "client/connection/connection.h"
 #include "client/connection/errors.h"
+#include "client/connection/tissue_probe.h"
 #include "client/print/watch_printer.h"
 #include "phrenic/v1/frames.grpc.pb.h"
 #include "server/stream/codecs/codec.h"
@@ -28,6 +30,7 @@ struct WatchOptions {
   double frames_per_second = 5;
   std::string codec;    // encoding of the vertices; empty: receive numbers only
   double bound_mm = 0;  // error bound of the codec [mm]; 0: the server's default
+  TissueQuestion tissue;
 };
 
 v1::WatchFramesRequest RequestOf(const WatchOptions& options) {
@@ -69,7 +72,9 @@ class Watcher {
         options_(options),
         stub_(v1::FrameService::NewStub(Connect(context))),
         request_(RequestOf(options)),
-        printer_(MakeWatchPrinter(context)) {}
+        printer_(MakeWatchPrinter(context)) {
+    if (!options.tissue.empty()) tissue_.emplace(context, options.id, options.tissue);
+  }
 
   grpc::Status Follow(OnReceived received) {
     grpc::ClientContext call;
@@ -78,8 +83,10 @@ class Watcher {
     const Interruption::Scope scope(*context_.interruption, call);
     const auto stream = stub_->WatchFrames(&call, request_);
     v1::AckFramesRequest acknowledged;  // empty, because a restarted server knows nothing of earlier frames
+    grpc::Status read;
     for (v1::WatchFramesResponse event; stream->Read(&event);) {
       received();
+      if (tissue_ && event.has_frame() && !(read = tissue_->AddTo(*event.mutable_frame())).ok()) break;
       printer_->Print(event);
       if (!event.has_frame()) continue;
       if (++frames_ == options_.count) call.TryCancel();
@@ -87,7 +94,9 @@ class Watcher {
       if (request_.max_unacked_frames() > 0) Acknowledge(*stub_, request_, acknowledged);
     }
     printer_->Detach();
+    if (!read.ok()) call.TryCancel();
     const grpc::Status status = stream->Finish();
+    if (!read.ok()) return read;
     const bool enough = frames_ > 0 && frames_ == options_.count;
     return enough ? grpc::Status::OK : status;
   }
@@ -100,10 +109,15 @@ class Watcher {
   const std::unique_ptr<v1::FrameService::Stub> stub_;
   const v1::WatchFramesRequest request_;
   const std::unique_ptr<WatchPrinter> printer_;
+  std::optional<TissueProbe> tissue_;  // none: the lungs are not read
   int frames_ = 0;
 };
 
 int Watch(const Context& context, const WatchOptions& options) {
+  if (absl::Status status = CheckQuestion(options.tissue); !status.ok()) {
+    Fail(status);
+    return kUsage;
+  }
   Watcher watcher(context, options);
   const grpc::Status status =
       StreamWithReconnect(context, [&](OnReceived received) { return watcher.Follow(received); });
@@ -119,6 +133,15 @@ CommandFunction SetUpWatch(CLI::App& command) {
   command.add_option("--seconds", options->seconds, "stop after this time [s]")->check(NumberIn(0.0, 1e7));
   command.add_option("--count", options->count, "stop after this many lines");
   command.add_option("--fps", options->frames_per_second, "lines per second, at most")->capture_default_str();
+  command.add_flag("--lungs", options->tissue.regions,
+                   "also print what each lung's base, middle, apex, back and front have gained of their volume");
+  command
+      .add_option("--at", options->tissue.points_mm,
+                  "also print how the lungs' tissue at x,y,z moves and stretches: its place at rest in the frame LPS "
+                  "[mm]; may be repeated")
+      ->check(NumberIn(-1e4, 1e4))
+      ->delimiter(',')
+      ->allow_extra_args(false);
   std::set<std::string> codecs;
   for (const stream::CodecRow& row : stream::Codecs()) codecs.emplace(row.name);
   command

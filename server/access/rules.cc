@@ -49,6 +49,8 @@ constexpr Rule kRules[] = {
     {"FrameService.WatchFrames", kNone, kViewer, kReads},
     {"FrameService.AckFrames", kNone, kViewer, kReads, !kOpen, true},
     {"FrameService.GetForces", kNone, kViewer, kReads},
+    {"TissueService.GetTissue", kNone, kViewer, kReads},
+    {"TissueService.ReadTissue", kNone, kViewer, kReads},
     {"CompareService.Compare", kViewer, kNone, kReads},
     {"ExportService.ListFormats", kNone, kNone, kReads},
     {"ExportService.CreateExport", kNone, kController, kChanges},

@@ -43,10 +43,6 @@ struct RegionSums {
   }
 };
 
-double PneumothoraxOf(v1::Side side, const v1::Parameters& parameters) {
-  return side == v1::SIDE_LEFT ? parameters.pneumothorax_left() : parameters.pneumothorax_right();
-}
-
 LungReading ReadLung(const LungMotion& lung, const LungField& field) {
   RegionSums sums;
   const Eigen::AlignedBox3d& box = lung.tissue.box();
@@ -67,6 +63,10 @@ LungReading ReadLung(const LungMotion& lung, const LungField& field) {
 }
 
 }  // namespace
+
+double FollowsSurroundings(v1::Side side, const v1::Parameters& parameters) {
+  return 1 - (side == v1::SIDE_LEFT ? parameters.pneumothorax_left() : parameters.pneumothorax_right());
+}
 
 absl::StatusOr<BreathingLungs> BreathingLungs::Make(const Subject& subject, const LungElasticity& elasticity) {
   const Parts& parts = subject.parts;
@@ -89,7 +89,7 @@ absl::StatusOr<BreathingLungs> BreathingLungs::Make(const Subject& subject, cons
 std::vector<LungMotion> BreathingLungs::Motions(const Recording& breath) const {
   std::vector<LungMotion> motions;
   for (const Lung& lung : lungs_) {
-    const double follows = 1 - PneumothoraxOf(lung.side, breath.parameters);
+    const double follows = FollowsSurroundings(lung.side, breath.parameters);
     const Points moved =
         follows * (lung.surroundings.Displacement(breath.peak) - lung.surroundings.Displacement(breath.base));
     motions.push_back({lung.tissue, lung.tissue.SolveVectors(moved)});

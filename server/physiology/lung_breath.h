@@ -11,12 +11,10 @@
 #include "server/mechanics/lungs/lung_field.h"
 #include "server/mechanics/lungs/lung_surroundings.h"
 #include "server/physiology/bones.h"
+#include "server/physiology/lung_regions.h"
 #include "server/physiology/recording.h"
 
 namespace phrenic::physiology {
-
-// Regions of a lung at rest: thirds of its height; the posterior and the anterior third of its depth.
-enum LungRegion { kLungBase, kLungMiddle, kLungApex, kLungBack, kLungFront, kLungRegions };
 
 // One lung in one breath, from its beginning to its peak.
 struct LungReading {
@@ -27,6 +25,9 @@ struct LungReading {
   double back_over_front = 0;                    // descent of the thirds of the depth, in the lower half [1]
   double upwards = 0;                            // part of the volume that moves up, 0..1
 };
+
+// Returns how far the lung of a side follows its surroundings, 0..1: not at all where air of a pneumothorax is between.
+double FollowsSurroundings(v1::Side side, const v1::Parameters& parameters);
 
 // The lungs of a scene as tissue. Refers to the subject's model. Immutable, thread-safe.
 class BreathingLungs {

@@ -33,6 +33,7 @@
 #include "server/service/server_service.h"
 #include "server/service/session_service.h"
 #include "server/service/study_service.h"
+#include "server/service/tissue_service.h"
 #include "server/service/upload_service.h"
 #include "server/service/web/web_gateway.h"
 #include "server/service/web_pages.h"
@@ -124,6 +125,7 @@ struct Server::Parts {
         control_service(table, guard),
         access_service(guard, table),
         frame_service(table, guard, metrics, options.limits),
+        tissue_service(table, guard, options.limits),
         exports(options.limits, options.spool_dir, clock, store.get(), options.web_root + "/offline.html"),
         export_service(table, exports, guard),
         upload_service(uploads, options.limits, guard),
@@ -174,6 +176,7 @@ struct Server::Parts {
   ControlService control_service;
   AccessService access_service;
   FrameService frame_service;
+  TissueService tissue_service;
   session::Exports exports;
   ExportService export_service;
   UploadService upload_service;
@@ -228,6 +231,7 @@ void Server::Parts::AddCalls() {
   control_service.AddTo(calls);
   access_service.AddTo(calls);
   frame_service.AddTo(calls);
+  tissue_service.AddTo(calls);
   export_service.AddTo(calls);
   upload_service.AddTo(calls);
   study_service.AddTo(calls);

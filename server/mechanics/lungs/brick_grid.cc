@@ -135,6 +135,16 @@ void BrickGrid::NumberNodes() {
   }
 }
 
+bool BrickGrid::Holds(const Eigen::Vector3d& point) const {
+  const Eigen::Array3d in_parts = kBrickSplit * InEdges(point).array();
+  if (!(in_parts >= 0).all() || !(in_parts < kBrickSplit * cells_.cast<double>().array()).all()) return false;
+  const Eigen::Vector3i part = in_parts.cast<int>();
+  const int brick = brick_of_cell_[Cell(part / kBrickSplit)];
+  const Eigen::Vector3i within = part - kBrickSplit * (part / kBrickSplit);
+  const int index = within.x() + kBrickSplit * (within.y() + kBrickSplit * within.z());
+  return brick >= 0 && fractions_[brick][index] > 0;
+}
+
 BrickGrid::Place BrickGrid::Locate(const Eigen::Vector3d& point) const {
   const Eigen::Vector3d in_edges = InEdges(point);
   const Eigen::Vector3d clamped = in_edges.cwiseMax(-1).cwiseMin(cells_.cast<double>());

@@ -49,6 +49,13 @@ class BrickGrid {
   const std::vector<BrickCorners>& bricks() const { return bricks_; }
   const std::vector<BrickFractions>& fractions() const { return fractions_; }
   double edge() const { return edge_; }  // [m]
+  // The cells of the bounding lattice: the corner of the first [m], their number along each axis, and the index of the
+  // brick in each, x fastest; -1: none.
+  const Eigen::Vector3d& origin() const { return origin_; }
+  const Eigen::Vector3i& cells() const { return cells_; }
+  const std::vector<int>& brick_of_cell() const { return brick_of_cell_; }
+  // True if the part of a brick that holds the point is inside the surface, or cut by it: within a quarter of an edge.
+  bool Holds(const Eigen::Vector3d& point) const;
 
   // Returns the brick that holds the point, or the one whose centre is nearest, in which fields are extrapolated by at
   // most one edge.

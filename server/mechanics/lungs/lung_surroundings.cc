@@ -71,14 +71,26 @@ double LungSurroundings::MediastinalShift(const State& state) const {
 }
 
 Points LungSurroundings::Displacement(const State& state) const {
+  std::array<Points, 2> placed;
+  for (size_t of = 0; of < placed.size(); ++of) {
+    placed[of].resize(3, model_.bodies[bodies_[of]].mesh.vertices.cols());
+    PlaceBody(model_, state, bodies_[of], placed[of]);
+  }
+  return Displacement(state, placed[0], placed[1]);
+}
+
+Points LungSurroundings::Displacement(const State& state, const Points& sheet, const Points& wall) const {
   Points displacement = Points::Constant(3, areas_.size(), std::numeric_limits<double>::quiet_NaN());
+  const std::array<const Points*, 2> placed = {&sheet, &wall};
   for (size_t of = 0; of < contacts_.size(); ++of) {
-    const Points& rest = model_.bodies[bodies_[of]].mesh.vertices;
-    Points moved(3, rest.cols());
-    PlaceBody(model_, state, bodies_[of], moved);
+    const Points &rest = model_.bodies[bodies_[of]].mesh.vertices, &moved = *placed[of];
     for (const Contact& contact : contacts_[of]) {
-      const Eigen::Matrix3d shift = moved(Eigen::all, contact.corners) - rest(Eigen::all, contact.corners);
-      displacement.col(contact.point) = shift * contact.weights;
+      Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+      for (int c = 0; c < 3; ++c) {
+        const int corner = contact.corners[c];
+        shift += contact.weights[c] * (moved.col(corner) - rest.col(corner));
+      }
+      displacement.col(contact.point) = shift;
     }
   }
   const Eigen::Vector3d sideways(MediastinalShift(state), 0, 0);

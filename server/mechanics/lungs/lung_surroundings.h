@@ -24,6 +24,8 @@ class LungSurroundings {
   // A point follows the material that is nearest to it at rest. The mediastinum is shifted sideways by the coordinate
   // "mediastinal shift" over its area.
   Points Displacement(const State& state) const;
+  // The same for placed bodies: the vertices of the sheet and of the wall [m] in the state.
+  Points Displacement(const State& state, const Points& sheet, const Points& wall) const;
 
   const std::vector<LungNeighbour>& neighbours() const { return neighbours_; }  // of each boundary point
   // The part of the surface that touches a neighbour, 0..1.

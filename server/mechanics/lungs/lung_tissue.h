@@ -60,6 +60,11 @@ class LungTissue {
   // The same for displacements of the surroundings at the boundary points (3 x points) [m], whose part along the
   // surface acts through the tangential stiffness. The surface is free at columns with NaN.
   Points SolveVectors(const ConstPoints& displacement) const;
+  // Returns the displacement of the nodes (3 nodes x columns) for each column of normal displacements g (points x
+  // columns); the surface is free at the points that `free` marks, where g is 0. Costs a factorisation if it marks any.
+  // The status of `stop`.
+  absl::StatusOr<Eigen::MatrixXd> SolveEach(const Eigen::MatrixXd& g, const std::vector<bool>& free,
+                                            const StopCheck& stop = {}) const;
   // Returns the displacement u of the nodes [m] that minimises E + w/2 sum |u(x_i) - r_i|^2 for surroundings at rest:
   // the smallest deformation through the vectors r (3 x n) [m] at the points x (3 x n) [m], per modulus; `weight` w
   // [m]. Costs a factorisation. INVALID_ARGUMENT if it fails: a vector that is not finite, or points without number.

@@ -1,0 +1,142 @@
+#include "server/mechanics/lungs/lung_responses.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace phrenic {
+namespace {
+
+constexpr int kMostDegree = 5;
+constexpr double kOfDegree = 0.5;       // size of a polynomial relative to one of a degree less
+constexpr double kRidge = 1e-9;         // of the mean diagonal, in least squares
+constexpr int kDegreeOfVertical = 5;    // of the diaphragm's vertical displacement, in x and y
+constexpr int kDegreeOfHorizontal = 2;  // of its horizontal one
+constexpr int kDegreeOfWall = 3;        // of each part of the wall's, in x, y and z
+
+using Legendre = std::array<double, kMostDegree + 1>;
+
+// Legendre's polynomials at a point of -1..1.
+Legendre PolynomialsAt(double t) {
+  Legendre p = {1, t};
+  for (int n = 1; n < kMostDegree; ++n) p[n + 1] = ((2 * n + 1) * t * p[n] - n * p[n - 1]) / (n + 1);
+  return p;
+}
+
+// A component of a neighbour's displacement, as a product of polynomials.
+struct Candidate {
+  LungNeighbour of;
+  int axis;
+  Eigen::Vector3i degrees;
+};
+
+void AddCandidates(LungNeighbour of, int axis, int degree, bool with_z, std::vector<Candidate>& candidates) {
+  for (int a = 0; a <= degree; ++a) {
+    for (int b = 0; a + b <= degree; ++b) {
+      for (int c = 0; c <= (with_z ? degree - a - b : 0); ++c) candidates.push_back({of, axis, {a, b, c}});
+    }
+  }
+}
+
+std::vector<Candidate> AllCandidates() {
+  std::vector<Candidate> candidates;
+  AddCandidates(LungNeighbour::kDiaphragm, 0, kDegreeOfHorizontal, false, candidates);
+  AddCandidates(LungNeighbour::kDiaphragm, 1, kDegreeOfHorizontal, false, candidates);
+  AddCandidates(LungNeighbour::kDiaphragm, 2, kDegreeOfVertical, false, candidates);
+  for (int axis = 0; axis < 3; ++axis) AddCandidates(LungNeighbour::kWall, axis, kDegreeOfWall, true, candidates);
+  AddCandidates(LungNeighbour::kMediastinum, 0, 0, false, candidates);
+  return candidates;
+}
+
+// Returns the normal displacement of each boundary point (points x candidates) for each candidate.
+Eigen::MatrixXd NormalParts(const LungTissue& tissue, const std::vector<LungNeighbour>& neighbours) {
+  const std::vector<Candidate> candidates = AllCandidates();
+  const Eigen::AlignedBox3d& box = tissue.box();
+  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(tissue.points().cols(), static_cast<Eigen::Index>(candidates.size()));
+  for (Eigen::Index p = 0; p < g.rows(); ++p) {
+    const Eigen::Vector3d at = (2 * tissue.points().col(p) - box.min() - box.max()).cwiseQuotient(box.sizes());
+    const std::array<Legendre, 3> along = {PolynomialsAt(at.x()), PolynomialsAt(at.y()), PolynomialsAt(at.z())};
+    for (Eigen::Index k = 0; k < g.cols(); ++k) {
+      const auto& [of, axis, degrees] = candidates[static_cast<size_t>(k)];
+      if (of != neighbours[static_cast<size_t>(p)]) continue;
+      const double value = along[0][degrees.x()] * along[1][degrees.y()] * along[2][degrees.z()];
+      g(p, k) = tissue.normals()(axis, p) * std::pow(kOfDegree, degrees.sum()) * value;
+    }
+  }
+  return g;
+}
+
+// Returns the matrix (candidates x points) that fits the candidates to normal displacements by least squares.
+Eigen::MatrixXd LeastSquares(const Eigen::MatrixXd& g, const Eigen::VectorXd& areas) {
+  const Eigen::MatrixXd weighted = (areas.asDiagonal() * g).transpose();
+  Eigen::MatrixXd normal = weighted * g;
+  normal.diagonal().array() += kRidge * normal.diagonal().mean();
+  return normal.ldlt().solve(weighted);
+}
+
+// Returns the combinations (candidates x shapes) that move the tissue most, by the responses (3 nodes x candidates).
+Eigen::MatrixXd Leading(const Eigen::MatrixXd& responses) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(responses.transpose() * responses);
+  const double enough = (1 - LungResponses::kLeftOut) * gram.eigenvalues().sum();
+  Eigen::Index count = 0;
+  const Eigen::Index most = std::min<Eigen::Index>(LungResponses::kMostShapes, gram.eigenvalues().size());
+  for (double sum = 0; count < most && sum < enough; ++count) {
+    sum += gram.eigenvalues()[gram.eigenvalues().size() - 1 - count];
+  }
+  return gram.eigenvectors().rightCols(count);
+}
+
+}  // namespace
+
+double TissueAtPoint::LargestStrain() const {
+  const Eigen::Matrix3d strain = (gradient + gradient.transpose()) / 2;
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(strain, Eigen::EigenvaluesOnly).eigenvalues()[2];
+}
+
+LungResponses::LungResponses(const LungTissue& tissue, const std::vector<LungNeighbour>& neighbours)
+    : grid_(tissue.grid()) {
+  for (size_t p = 0; p < neighbours.size(); ++p) {
+    if (neighbours[p] != LungNeighbour::kNone) touching_.push_back(static_cast<Eigen::Index>(p));
+  }
+  normals_ = tissue.normals()(Eigen::all, touching_);
+}
+
+absl::StatusOr<LungResponses> LungResponses::Make(const LungTissue& tissue,
+                                                  const std::vector<LungNeighbour>& neighbours, const StopCheck& stop) {
+  LungResponses lung(tissue, neighbours);
+  std::vector<bool> free;
+  for (const LungNeighbour neighbour : neighbours) free.push_back(neighbour == LungNeighbour::kNone);
+  const Eigen::MatrixXd g = NormalParts(tissue, neighbours);
+  const absl::StatusOr<Eigen::MatrixXd> responses = tissue.SolveEach(g, free, stop);
+  if (!responses.ok()) return responses.status();
+  const Eigen::MatrixXd leading = Leading(*responses);
+  lung.shapes_ = *responses * leading;
+  lung.projection_ = leading.transpose() * LeastSquares(g, tissue.areas())(Eigen::all, lung.touching_);
+  return lung;
+}
+
+Eigen::VectorXd LungResponses::Amplitudes(const ConstPoints& displacement) const {
+  Eigen::VectorXd g(static_cast<Eigen::Index>(touching_.size()));
+  for (Eigen::Index i = 0; i < g.size(); ++i) {
+    g[i] = normals_.col(i).dot(displacement.col(touching_[static_cast<size_t>(i)]));
+  }
+  return projection_ * g;
+}
+
+Points LungResponses::Nodes(const Eigen::VectorXd& amplitudes) const {
+  const Eigen::VectorXd nodes = shapes_ * amplitudes;
+  return nodes.reshaped(3, grid_.nodes().cols());
+}
+
+TissueAtPoint LungResponses::At(const Eigen::VectorXd& amplitudes, const Eigen::Vector3d& point) const {
+  const auto [brick, local] = grid_.Locate(point);
+  Eigen::Matrix<double, 3, 8> corners;
+  for (int c = 0; c < 8; ++c) {
+    corners.col(c) = shapes_.middleRows<3>(3 * grid_.bricks()[static_cast<size_t>(brick)][c]) * amplitudes;
+  }
+  return {corners * WeightsAt(local), corners * GradientsAt(local).transpose() / grid_.edge()};
+}
+
+}  // namespace phrenic

@@ -1,0 +1,72 @@
+// The motion of lung tissue as a sum of few shapes, so that the whole interior of a lung follows from a state in
+// microseconds instead of milliseconds:
+//   u(x) = sum_k q_k u_k(x),   q = P g   [m],
+// with g the normal displacement of what touches each point of the surface [m], P a constant matrix, and u_k the
+// responses of the elastic, sliding tissue (lung_tissue.h) to smooth motions of the surroundings.
+//
+// How the shapes are made. Of each neighbour, the displacement is written in Legendre polynomials over the lung's box:
+// of the diaphragm the vertical part to degree 5 and the horizontal one to degree 2 in x and y; of the wall all parts
+// to degree 3; of the mediastinum one sideways shift. That are 94 candidates; polynomials of degree n are taken as 2^-n
+// as large as constants. P fits them to g by area-weighted least squares. Of their responses those combinations are
+// kept that move the tissue most: the leading eigenvectors of the Gram matrix, until what is left is below kLeftOut of
+// the mean square, at most kMostShapes.
+//
+// What is lost is what is not smooth: tests/physiology/live_lungs_test.cc states the error against the full solution.
+#ifndef PHRENIC_SERVER_MECHANICS_LUNGS_LUNG_RESPONSES_H_
+#define PHRENIC_SERVER_MECHANICS_LUNGS_LUNG_RESPONSES_H_
+
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "server/mechanics/lungs/lung_surroundings.h"
+#include "server/mechanics/lungs/lung_tissue.h"
+
+namespace phrenic {
+
+// Lung tissue at a point, relative to rest.
+struct TissueAtPoint {
+  Eigen::Vector3d displacement;  // [m]
+  Eigen::Matrix3d gradient;      // du_i/dx_j [1]
+
+  // Volume gained per volume at rest: div u [1].
+  double Ventilation() const { return gradient.trace(); }
+  // The largest principal value of the small strain, (du_i/dx_j + du_j/dx_i)/2 [1].
+  double LargestStrain() const;
+};
+
+// Immutable, thread-safe.
+class LungResponses {
+ public:
+  static constexpr int kMostShapes = 40;
+  static constexpr double kLeftOut = 1e-5;
+
+  // Factorises the tissue with its free points and solves for all candidates: half a second. `neighbours` are those of
+  // the tissue's boundary points. The status of `stop`.
+  static absl::StatusOr<LungResponses> Make(const LungTissue& tissue, const std::vector<LungNeighbour>& neighbours,
+                                            const StopCheck& stop = {});
+
+  // Returns the amplitudes q [m] for displacements of the surroundings at the boundary points (3 x points) [m]. Free
+  // points are not read.
+  Eigen::VectorXd Amplitudes(const ConstPoints& displacement) const;
+  // Returns the displacement of the grid's nodes (3 x nodes) [m].
+  Points Nodes(const Eigen::VectorXd& amplitudes) const;
+  // Returns the tissue at a point, whose place is where it is at rest; outside the lung as in the nearest brick.
+  TissueAtPoint At(const Eigen::VectorXd& amplitudes, const Eigen::Vector3d& point) const;
+
+  const BrickGrid& grid() const { return grid_; }
+  // The displacement of the nodes per amplitude, row 3 node + axis (3 nodes x shapes) [1].
+  const Eigen::MatrixXd& shapes() const { return shapes_; }
+
+ private:
+  LungResponses(const LungTissue& tissue, const std::vector<LungNeighbour>& neighbours);
+
+  BrickGrid grid_;
+  std::vector<Eigen::Index> touching_;  // the boundary points that are not free
+  Points normals_;                      // of these
+  Eigen::MatrixXd projection_;          // P: shapes x touching points
+  Eigen::MatrixXd shapes_;
+};
+
+}  // namespace phrenic
+
+#endif  // PHRENIC_SERVER_MECHANICS_LUNGS_LUNG_RESPONSES_H_

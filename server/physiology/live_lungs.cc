@@ -1,0 +1,68 @@
+#include "server/physiology/live_lungs.h"
+
+#include <utility>
+
+#include "server/physiology/lung_breath.h"
+#include "server/physiology/parts.h"
+
+namespace phrenic::physiology {
+
+absl::Status LiveLungs::Add(int body, const StopCheck& stop) {
+  const BodyModel& lung = model_.bodies[static_cast<size_t>(body)];
+  const absl::StatusOr<LungTissue> tissue = LungTissue::Make(lung.mesh, {}, stop);
+  if (!tissue.ok()) return tissue.status();
+  LungSurroundings surroundings(model_, sheet_, wall_, *tissue);
+  absl::StatusOr<LungResponses> responses = LungResponses::Make(*tissue, surroundings.neighbours(), stop);
+  if (!responses.ok()) return responses.status();
+  const RegionWeights weights = WeightsOfRegions(tissue->grid(), tissue->box());
+  const Eigen::MatrixXd& shapes = responses->shapes();
+  Eigen::MatrixXd caudal = weights.caudal * shapes, gained = weights.gained * shapes;
+  const Eigen::RowVectorXd volume = weights.volume * shapes;
+  lungs_.push_back(
+      {body, lung.name, *std::move(responses), std::move(surroundings), std::move(caudal), std::move(gained), volume});
+  return absl::OkStatus();
+}
+
+absl::StatusOr<LiveLungs> LiveLungs::Make(const Model& model, const StopCheck& stop) {
+  const absl::StatusOr<Parts> parts = FindParts(model);
+  if (!parts.ok() || parts->lungs.empty() || parts->muscle < 0 || parts->wall < 0) {
+    return absl::FailedPreconditionError(
+        "the scene lacks lungs, a simulated diaphragm or an inner wall of the cage, so that nothing moves lung tissue");
+  }
+  LiveLungs lungs(model, parts->muscle, parts->wall);
+  for (const int body : parts->lungs) {
+    if (absl::Status added = lungs.Add(body, stop); !added.ok()) return added;
+  }
+  return lungs;
+}
+
+std::vector<LungMoment> LiveLungs::At(const State& state, const v1::Parameters& parameters) const {
+  const Points sheet = Placed(model_, state, sheet_), wall = Placed(model_, state, wall_);
+  std::vector<LungMoment> moments;
+  for (const Lung& lung : lungs_) {
+    const double follows =
+        FollowsSurroundings(model_.bodies[static_cast<size_t>(lung.body)].anatomy.side(), parameters);
+    LungMoment& moment = moments.emplace_back();
+    moment.amplitudes = follows * lung.responses.Amplitudes(lung.surroundings.Displacement(state, sheet, wall));
+    moment.volume = lung.volume * moment.amplitudes;
+    const Eigen::VectorXd caudal = lung.caudal * moment.amplitudes, gained = lung.gained * moment.amplitudes;
+    for (size_t r = 0; r < kLungRegions; ++r) {
+      moment.caudal[r] = caudal[static_cast<Eigen::Index>(r)];
+      moment.gained[r] = gained[static_cast<Eigen::Index>(r)];
+    }
+  }
+  return moments;
+}
+
+std::optional<TissueReading> LiveLungs::Read(const std::vector<LungMoment>& moments,
+                                             const Eigen::Vector3d& point) const {
+  for (size_t i = 0; i < lungs_.size(); ++i) {
+    const LungResponses& responses = lungs_[i].responses;
+    if (responses.grid().Holds(point)) {
+      return TissueReading{static_cast<int>(i), responses.At(moments[i].amplitudes, point)};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace phrenic::physiology

@@ -1,0 +1,65 @@
+// The interior of the lungs at any moment of a run, relative to rest: what viewers and probes read while a session
+// runs. No step computes it; a scene that nobody reads it of has no part of it in memory.
+#ifndef PHRENIC_SERVER_PHYSIOLOGY_LIVE_LUNGS_H_
+#define PHRENIC_SERVER_PHYSIOLOGY_LIVE_LUNGS_H_
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "server/mechanics/lungs/lung_responses.h"
+#include "server/physiology/lung_regions.h"
+
+namespace phrenic::physiology {
+
+// One lung at one moment.
+struct LungMoment {
+  Eigen::VectorXd amplitudes;                    // of its shapes (LungResponses) [m]
+  double volume = 0;                             // gained: the integral of div u [m^3]
+  std::array<double, kLungRegions> caudal = {};  // mean descent [m]
+  std::array<double, kLungRegions> gained = {};  // mean of div u: volume gained per volume at rest [1]
+};
+
+// Tissue at a place of a lung.
+struct TissueReading {
+  int lung;  // in LiveLungs::lungs()
+  TissueAtPoint tissue;
+};
+
+// The lungs of a model. Refers to it. Immutable, thread-safe.
+class LiveLungs {
+ public:
+  struct Lung {
+    int body;  // in Model::bodies
+    std::string name;
+    LungResponses responses;
+    LungSurroundings surroundings;
+    // Of its shapes: RegionWeights times LungResponses::shapes().
+    Eigen::MatrixXd caudal, gained;
+    Eigen::RowVectorXd volume;
+  };
+
+  // Factorises and reduces both lungs: 1 to 2 s. FAILED_PRECONDITION if the scene lacks lungs, a simulated diaphragm or
+  // an inner wall of the cage; as LungTissue::Make; the status of `stop`.
+  static absl::StatusOr<LiveLungs> Make(const Model& model, const StopCheck& stop = {});
+
+  const std::vector<Lung>& lungs() const { return lungs_; }
+  // Returns each lung in a state. A lung follows its surroundings by 1 - the pneumothorax of its side.
+  std::vector<LungMoment> At(const State& state, const v1::Parameters& parameters) const;
+  // Returns the tissue at a point, whose place is where it is at rest [m]; none outside the lungs. `moments` are of At.
+  std::optional<TissueReading> Read(const std::vector<LungMoment>& moments, const Eigen::Vector3d& point) const;
+
+ private:
+  LiveLungs(const Model& model, int sheet, int wall) : model_(model), sheet_(sheet), wall_(wall) {}
+  absl::Status Add(int body, const StopCheck& stop);
+
+  const Model& model_;
+  int sheet_, wall_;  // bodies
+  std::vector<Lung> lungs_;
+};
+
+}  // namespace phrenic::physiology
+
+#endif  // PHRENIC_SERVER_PHYSIOLOGY_LIVE_LUNGS_H_
