@@ -1,5 +1,9 @@
 #include "server/service/tissue_service.h"
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -22,6 +26,14 @@ std::string FloatBytes(const Eigen::MatrixXd& numbers) {
   return {reinterpret_cast<const char*>(floats.data()), sizeof(float) * static_cast<std::size_t>(floats.size())};
 }
 
+// The byte of a cell in GetTissueResponse.bricks.
+char BrickByte(const BrickGrid& grid, int brick) {
+  if (brick < 0) return 0;
+  const BrickFractions& parts = grid.fractions()[static_cast<std::size_t>(brick)];
+  const float inside = std::accumulate(parts.begin(), parts.end(), 0.0F) / static_cast<float>(parts.size());
+  return static_cast<char>(1 + std::lround(254 * std::clamp(inside, 0.0F, 1.0F)));
+}
+
 void WriteLung(const LiveLungs::Lung& lung, v1::GetTissueResponse& response) {
   const BrickGrid& grid = lung.responses.grid();
   response.set_name(lung.name);
@@ -30,7 +42,7 @@ void WriteLung(const LiveLungs::Lung& lung, v1::GetTissueResponse& response) {
   response.mutable_origin()->set_z(grid.origin().z());
   response.set_edge(grid.edge());
   for (const int count : grid.cells()) response.add_cells(count);
-  for (const int brick : grid.brick_of_cell()) response.mutable_bricks()->push_back(brick < 0 ? 0 : 1);
+  for (const int brick : grid.brick_of_cell()) response.mutable_bricks()->push_back(BrickByte(grid, brick));
   response.set_shapes(FloatBytes(lung.responses.shapes()));
   response.set_shape_count(static_cast<int>(lung.responses.shapes().cols()));
 }

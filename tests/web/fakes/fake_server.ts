@@ -27,6 +27,11 @@ import {
   SessionState,
 } from "../../../web/src/gen/phrenic/v1/session_pb";
 import { StudyService, StudyState } from "../../../web/src/gen/phrenic/v1/study_pb";
+import {
+  type GetTissueResponseSchema,
+  type PointReadingSchema,
+  TissueService,
+} from "../../../web/src/gen/phrenic/v1/tissue_pb";
 
 type ComparisonEvent = MessageInitShape<typeof CompareResponseSchema>["event"];
 type Event = MessageInitShape<typeof WatchFramesResponseSchema>["event"];
@@ -90,6 +95,16 @@ export class FakeServer {
   readonly forceRequests: object[] = [];
   /** Time [s] and force magnitudes [N] of the answers to force requests. */
   forceResponse = { time: 0, sizes: [0.5, 0.25] };
+  /** The lungs' tissue at one time [s], each lung with these amplitudes [m]; undefined for a scene without lungs. */
+  tissue:
+    | {
+        lungs: MessageInitShape<typeof GetTissueResponseSchema>[];
+        time: number;
+        amplitudes: number[];
+        points: MessageInitShape<typeof PointReadingSchema>[];
+      }
+    | undefined;
+  readonly tissueCalls: ("get" | "read")[] = [];
   readonly comparisons: CompareRequest[] = [];
   /** Events that a comparison sends in this order; promises are awaited. */
   comparisonEvents: (ComparisonEvent | Promise<ComparisonEvent>)[] = [];
@@ -148,8 +163,31 @@ export class FakeServer {
       service(FrameService, this.streams());
       service(CompareService, this.comparing());
       service(StudyService, this.studying());
+      service(TissueService, this.tissueReader());
     }),
   );
+
+  private tissueReader() {
+    const server = this;
+    return {
+      async *getTissue() {
+        server.tissueCalls.push("get");
+        await Promise.resolve();
+        if (server.tissue === undefined) throw new ConnectError("the scene lacks lungs", Code.FailedPrecondition);
+        yield* server.tissue.lungs;
+      },
+      readTissue() {
+        server.tissueCalls.push("read");
+        const { lungs, time, amplitudes, points } = server.tissue!;
+        const read = lungs.map(({ name }) => ({
+          name,
+          amplitudes: bytesOf(new Float32Array(amplitudes)),
+          regions: [],
+        }));
+        return server.answer({ time, lungs: read, points });
+      },
+    };
+  }
 
   /** Sends an event to every watcher. */
   send(event: Event): void {

@@ -13,6 +13,7 @@ import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import { SessionState } from "../gen/phrenic/v1/session_pb";
 import type { Body } from "../geometry/bodies";
+import { LungTools } from "../lungs/lung_tools";
 import { ComparisonCard } from "../panels/comparison/comparison_card";
 import { distancePanel } from "../panels/comparison/distance_panel";
 import { presetComparison } from "../panels/comparison/preset_comparison";
@@ -141,6 +142,7 @@ export class App {
       this.layerStyles,
       this.comparisons,
       new ForceQueries(api, sessionId),
+      new LungTools(api, sessionId),
     );
     this.cameraSharing = new CameraSharing(api, sessionId, this.participation, this.viewer.rig, clock);
     this.graphs = new GraphsPanel(() => sessionId, this.tools.ownSeries);
@@ -429,8 +431,8 @@ export class App {
     this.student.draw();
     if (this.timeline.replaying) return;
     const session = this.controller.session.value;
-    this.tools.queryForces(`${this.frames.frame?.tick} ${session?.revision}`);
-    this.secondView?.queryForces();
+    this.tools.query(`${this.frames.frame?.tick} ${session?.revision}`);
+    this.secondView?.query();
   }
 
   private updateStatus(): void {

@@ -1,6 +1,6 @@
 import { ColorScale, niceTop } from "../appearance/color_scale";
 import { Coloring } from "../appearance/coloring";
-import { forceKindOf } from "../appearance/fields";
+import { forceKindOf, tissueKindOf } from "../appearance/fields";
 import { type GhostKind, GhostSelector } from "../appearance/ghosts";
 import type { LayerStyles } from "../appearance/layer_styles";
 import { LiveDistance } from "../appearance/live_distance";
@@ -10,12 +10,15 @@ import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import type { Body, FrameArrays } from "../geometry/bodies";
 import type { CameraPose } from "../geometry/camera_pose";
 import type { VertexRef } from "../geometry/vertices";
+import type { LungTools } from "../lungs/lung_tools";
+import { paintedSections } from "../appearance/painted_sections";
 import type { TrackedSeries } from "../panels/readings/graphs";
 import { appearancePanel } from "../panels/view/appearance_panel";
 import { coloringCard } from "../panels/view/coloring_card";
 import { OrientationCube } from "../panels/view/orientation_cube";
 import { PickCard } from "../panels/view/pick_card";
 import { rememberedQuality } from "../panels/view/quality_row";
+import { TissueCard } from "../panels/view/tissue_card";
 import type { Comparisons } from "../session/comparisons";
 import type { ForceQueries, ForceRequest } from "../session/force_queries";
 import { Signal } from "../state/signal";
@@ -62,6 +65,9 @@ export class SceneTools {
   private time = 0;
   /** The replayed time [s]; undefined when live. */
   private replayTime: number | undefined;
+  private forcesUnknown = false;
+  /** True if the scene has lungs, whose tissue may be shown. */
+  private readonly hasLungs = new Signal(false);
 
   constructor(
     private readonly viewer: Viewer,
@@ -69,8 +75,9 @@ export class SceneTools {
     layerStyles: LayerStyles,
     private readonly comparisons: Comparisons,
     private readonly forces: ForceQueries,
+    private readonly lungs: LungTools,
   ) {
-    this.coloring = new Coloring(forces);
+    this.coloring = new Coloring(forces, lungs.tissue);
     this.ghosts = new GhostSelector(viewer, arrays, this.ghost);
     this.pickCard = new PickCard(this.trackedVertices, forces.onVertex);
     this.cube = new OrientationCube((view) => this.visit(view));
@@ -79,11 +86,15 @@ export class SceneTools {
     );
     const { annotations, nameLabels } = namedAnnotations(viewer, { ...this, layerStyles });
     [this.annotations, this.nameLabels] = [annotations, nameLabels];
-    const pickAt = viewer.enablePicking((ref) => this.pick(ref));
+    const pickAt = viewer.enablePicking(
+      (ref) => this.pick(ref),
+      (place) => lungs.follow(place),
+    );
     this.measuring = new Measuring(viewer.canvas, this.annotations, () => this.bodies, this.structures, pickAt);
     for (const changes of [this.measuring.measurements.all, this.measuring.measurements.picked])
       changes.subscribe(() => this.updateMarkers());
-    this.cards = [coloringCard(this.coloring), this.structures.card, this.pickCard.element];
+    const tissueCard = new TissueCard(lungs.points);
+    this.cards = [coloringCard(this.coloring), tissueCard.element, this.structures.card, this.pickCard.element];
     const { labels, ghost, quality } = this;
     this.panel = appearancePanel({
       layerStyles,
@@ -91,6 +102,7 @@ export class SceneTools {
       ghost,
       quality,
       forceKinds: forces.kinds,
+      hasLungs: this.hasLungs,
       overlays: this.overlays,
       coloring: this.coloring,
       cut: this.cut,
@@ -98,13 +110,23 @@ export class SceneTools {
     });
     this.cut.subscribe((cut) => {
       viewer.setCut(cut);
+      this.updateSections();
     });
     this.overlays.subscribe((shown) => viewer.showOverlays(shown));
     quality.subscribe((chosen) => viewer.setQuality(chosen));
     this.coloring.field.subscribe(() => {
       this.updateFields();
       this.replayForces();
+      tissueCard.element.hidden = tissueKindOf(this.coloring.field.value) === undefined;
     });
+    lungs.tissue.queries.readings.subscribe(() => {
+      this.updateFields();
+      this.coloring.fitToTissue();
+      if (tissueKindOf(this.coloring.field.value) !== undefined) this.updateColors();
+      this.updateMarkers();
+    });
+    lungs.tissue.queries.message.subscribe(() => this.updateMessage());
+    lungs.points.all.subscribe(() => this.updateMarkers());
     this.coloring.scale.subscribe(() => this.updateColors());
     comparisons.result.subscribe((result) => {
       this.liveDistance = result === undefined ? undefined : new LiveDistance(result);
@@ -129,6 +151,8 @@ export class SceneTools {
     this.structures.start(bodies);
     this.coloring.start(this.tissue);
     void this.forces.start(this.tissue[0]?.name);
+    this.lungs.start(bodies);
+    this.hasLungs.set(bodies.some(({ name }) => name.startsWith("lung-")));
     this.trackedVertices.clear();
     this.measuring.measurements.clear();
     if (this.ghost.value === "now") this.ghost.set("none");
@@ -153,7 +177,8 @@ export class SceneTools {
   /** The series of vertices and measurements that this viewer plots. */
   readonly ownSeries = (): TrackedSeries[] => {
     const { spec, history } = this.trackedVertices;
-    return [...(spec === undefined ? [] : [{ spec, history }]), ...this.measuring.measurements.graphs];
+    const { graphs } = this.lungs.points;
+    return [...(spec === undefined ? [] : [{ spec, history }]), ...graphs, ...this.measuring.measurements.graphs];
   };
 
   /** Shows a view by its name; unknown names change nothing. Its cut replaces that of the view before. */
@@ -216,9 +241,10 @@ export class SceneTools {
     paintTexts(this.nameLabels, pen, ratio);
   }
 
-  /** Queries the forces that are shown. `seen` identifies the state that the viewer received last. */
-  queryForces(seen: string): void {
+  /** Queries the forces and the tissue that are shown. `seen` identifies the state that the viewer received last. */
+  query(seen: string): void {
     void this.forces.query(this.forceRequest(), seen);
+    this.lungs.query(tissueKindOf(this.coloring.field.value) !== undefined, seen);
   }
 
   /** Shows the forces of an earlier time [s], or live ones if `time` is undefined. */
@@ -240,7 +266,14 @@ export class SceneTools {
       this.replayTime !== undefined &&
       this.forceRequest().kind !== undefined &&
       this.forces.magnitudes.value.size === 0;
-    this.coloring.message.set(unknown ? "Forces are unknown at this time: only displayed forces are recorded." : "");
+    this.forcesUnknown = unknown;
+    this.updateMessage();
+  }
+
+  private updateMessage(): void {
+    const tissue = tissueKindOf(this.coloring.field.value) === undefined ? "" : this.lungs.tissue.queries.message.value;
+    const unknown = "Forces are unknown at this time: only displayed forces are recorded.";
+    this.coloring.message.set(this.forcesUnknown ? unknown : tissue);
   }
 
   /** Updates the readings and the colours of a comparison; called a few times per second. */
@@ -263,10 +296,16 @@ export class SceneTools {
   /** Colours of a comparison take precedence over those of a field. */
   private updateColors(): void {
     const comparison = this.comparisons.result.value;
+    this.updateSections();
     if (comparison === undefined) return this.viewer.setVertexColors(this.coloring.colors());
     const { body, distances } = comparison;
     const scale = new ColorScale(niceTop(distances));
     this.viewer.setVertexColors(new Map([[body, scale.colors(this.liveDistance?.values ?? distances)]]));
+  }
+
+  /** Paints the lungs in the cut, if they are coloured by their tissue. */
+  private updateSections(): void {
+    this.viewer.showInCut(paintedSections(this.lungs.tissue, this.coloring, this.viewer.cutPlane, this.arrays()));
   }
 
   private updateComparedSurface(): void {
@@ -277,6 +316,7 @@ export class SceneTools {
   private updateMarkers(): void {
     const arrays = this.arrays();
     if (arrays === undefined) return;
-    this.viewer.setMarkers([...this.trackedVertices.markers(arrays), ...this.measuring.markers(arrays)]);
+    const own = [...this.trackedVertices.markers(arrays), ...this.measuring.markers(arrays)];
+    this.viewer.setMarkers([...own, ...this.lungs.markers()]);
   }
 }

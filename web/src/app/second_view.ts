@@ -1,4 +1,4 @@
-import { forceKindOf, needsExactPositions } from "../appearance/fields";
+import { forceKindOf, needsExactPositions, tissueKindOf } from "../appearance/fields";
 import { GhostSelector } from "../appearance/ghosts";
 import type { LayerStyles } from "../appearance/layer_styles";
 import { VertexColorizer } from "../appearance/vertex_colorizer";
@@ -10,6 +10,8 @@ import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { type Preset } from "../gen/phrenic/v1/scene_pb";
 import { type Session, SessionState } from "../gen/phrenic/v1/session_pb";
 import type { Body } from "../geometry/bodies";
+import { LungTissue } from "../lungs/lung_tissue";
+import { paintedSections } from "../appearance/painted_sections";
 import { ViewHeaders } from "../panels/comparison/view_headers";
 import { ForceQueries, type ForceRequest } from "../session/force_queries";
 import { SessionController } from "../session/session_controller";
@@ -51,6 +53,7 @@ export class SecondView {
   private readonly connection: SessionConnection;
   private readonly frames = new FrameBuffer();
   private readonly forces: ForceQueries;
+  private readonly lungs: LungTissue;
   private readonly colorizer: VertexColorizer;
   private readonly ghosts: GhostSelector;
   private readonly annotations: Annotations;
@@ -76,7 +79,12 @@ export class SecondView {
     this.annotations = annotations;
     this.element = make("div", { id: "second-view" }, canvas, annotations.element, nameLabels);
     this.forces = new ForceQueries(api, sessionId);
-    this.colorizer = new VertexColorizer(this.forces);
+    this.lungs = new LungTissue(api, sessionId);
+    this.lungs.queries.readings.subscribe(() => {
+      this.updateFields();
+      this.updateColors();
+    });
+    this.colorizer = new VertexColorizer(this.forces, this.lungs);
     this.ghosts = new GhostSelector(this.viewer, () => this.frames.displayed?.arrays, primary.tools.ghost);
     this.connection = new SessionConnection(api, sessionId, this.connectionListener(), clock);
     this.trackCameraLeader(canvas);
@@ -120,10 +128,11 @@ export class SecondView {
     this.forces.replayAt(time, this.forceRequest());
   }
 
-  /** Queries the forces that this view is coloured by. */
-  queryForces(): void {
+  /** Queries the forces or the tissue that this view is coloured by. */
+  query(): void {
     const seen = `${this.frames.frame?.tick} ${this.controller.session.value?.revision}`;
     void this.forces.query(this.forceRequest(), seen);
+    if (tissueKindOf(this.primary.tools.coloring.field.value) !== undefined) void this.lungs.queries.query([], seen);
   }
 
   private forceRequest(): ForceRequest {
@@ -147,6 +156,7 @@ export class SecondView {
     tools.quality.subscribe((chosen) => this.viewer.setQuality(chosen));
     tools.cut.subscribe((cut) => {
       this.viewer.setCut(cut);
+      this.updateColors();
     });
     coloring.field.subscribe((kind) => {
       this.connection.setExact(needsExactPositions(kind));
@@ -196,6 +206,7 @@ export class SecondView {
     this.frames.start(bodies);
     this.viewer.show(bodies);
     this.colorizer.start(tissue);
+    this.lungs.start(bodies);
     this.ghosts.start(tissue);
     this.followCamera();
     this.applyLayerStyles();
@@ -215,6 +226,9 @@ export class SecondView {
   private updateColors(): void {
     const { field, scale } = this.primary.tools.coloring;
     this.viewer.setVertexColors(this.colorizer.colors(field.value, scale.value));
+    const { displayed } = this.frames;
+    const { coloring } = this.primary.tools;
+    this.viewer.showInCut(paintedSections(this.lungs, coloring, this.viewer.cutPlane, displayed?.arrays));
   }
 
   /** Synchronises the sessions again if others played them separately or the server restarted. */

@@ -1,11 +1,12 @@
 import type { Body, FrameArrays } from "../geometry/bodies";
+import type { LungTissue } from "../lungs/lung_tissue";
 import type { ForceQueries } from "../session/force_queries";
 import { Signal } from "../state/signal";
 import { ColorScale, niceTop } from "./color_scale";
-import { fieldInfo, type FieldKind, forceKindOf } from "./fields";
+import { fieldInfo, type FieldKind, forceKindOf, tissueKindOf } from "./fields";
 import { VertexColorizer } from "./vertex_colorizer";
 
-/** Colours deformable bodies by a field. The scale stays fixed until it is fitted or set. */
+/** Colours deformable bodies, or the lungs, by a field. The scale stays fixed until it is fitted or set. */
 export class Coloring {
   /** The field; undefined if bodies have their own colours. */
   readonly field = new Signal<FieldKind | undefined>(undefined);
@@ -13,11 +14,11 @@ export class Coloring {
   /** Explains why there are no colours; otherwise empty. */
   readonly message = new Signal("");
   private readonly colorizer: VertexColorizer;
-  /** True until the scale has been fitted to values, which arrive later for forces. */
+  /** True until the scale has been fitted to values, which arrive later for forces and tissue. */
   private needsFit = false;
 
-  constructor(forces: ForceQueries) {
-    this.colorizer = new VertexColorizer(forces);
+  constructor(forces: ForceQueries, lungs?: LungTissue) {
+    this.colorizer = new VertexColorizer(forces, lungs);
     forces.magnitudes.subscribe((sizes) => {
       if (this.needsFit && sizes.size > 0) this.fit();
     });
@@ -42,7 +43,14 @@ export class Coloring {
   choose(kind: FieldKind | undefined): void {
     this.field.set(kind);
     this.fit();
-    this.needsFit = forceKindOf(kind) !== undefined;
+    this.needsFit = forceKindOf(kind) !== undefined || tissueKindOf(kind) !== undefined;
+  }
+
+  /** Fits the scale once the values of the lungs' tissue have arrived, unless it is fitted or set. */
+  fitToTissue(): void {
+    const { value } = this.field;
+    if (this.needsFit && value !== undefined && tissueKindOf(value) !== undefined)
+      if (this.colorizer.upperBounds(value).some((bound) => bound > 0)) this.fit();
   }
 
   /** Ends the scale at the 99th percentile of the current values. */

@@ -1,13 +1,14 @@
 import { type Body, type FrameArrays, positionsOf } from "../geometry/bodies";
 import { areaChanges, displacements, speeds } from "../geometry/deformation";
 import { principalStrains } from "../geometry/strain";
+import type { TissueKind } from "../lungs/tissue_state";
 import { forceKindLabel } from "../session/force_queries";
 
 /**
- * A field that a surface can be coloured by: computed from its shape, or the magnitude of one kind of force from the
- * server.
+ * A field that a surface can be coloured by: computed from its shape, the magnitude of one kind of force, or the lungs'
+ * tissue, both from the server.
  */
-export type FieldKind = ShapeKind | `force:${string}`;
+export type FieldKind = ShapeKind | `force:${string}` | `tissue:${TissueKind}`;
 /** Fields that are computed from the shape of a surface. */
 export type ShapeKind = "displacement" | "speed" | "area" | "largest" | "smallest";
 
@@ -67,6 +68,39 @@ export const fields: FieldInfo[] = [
   },
 ];
 
+/** The catalogue of fields of the lungs' tissue, relative to rest. */
+export const tissueFields: FieldInfo[] = [
+  {
+    kind: "tissue:displacement",
+    label: "Lungs: displacement",
+    unit: "mm",
+    help: "Distance of the lungs' tissue from where it is at rest",
+    diverging: false,
+    smallestTop: 10,
+  },
+  {
+    kind: "tissue:ventilation",
+    label: "Lungs: volume gained",
+    unit: "%",
+    help: "Ventilation: volume that the tissue gained, of its volume at rest",
+    diverging: true,
+    smallestTop: 10,
+  },
+  {
+    kind: "tissue:strain",
+    label: "Lungs: largest strain",
+    unit: "%",
+    help: "Largest principal strain of the lungs' tissue",
+    diverging: true,
+    smallestTop: 10,
+  },
+];
+
+/** Returns the field of the lungs' tissue; undefined for other fields. */
+export function tissueKindOf(kind: FieldKind | undefined): TissueKind | undefined {
+  return tissueFields.some((each) => each.kind === kind) ? (kind?.slice("tissue:".length) as TissueKind) : undefined;
+}
+
 /** True if the field depends on distances between neighbours, where a position error of 0.1 mm would be visible. */
 export function needsExactPositions(kind: FieldKind | undefined): boolean {
   return kind === "area" || kind === "largest" || kind === "smallest";
@@ -80,7 +114,7 @@ export function forceKindOf(kind: FieldKind | undefined): string | undefined {
 /** Returns the description of a shape or force field; undefined without a field. */
 export function fieldInfo(kind: FieldKind | undefined): FieldInfo | undefined {
   const force = forceKindOf(kind);
-  if (kind === undefined || force === undefined) return fields.find((each) => each.kind === kind);
+  if (kind === undefined || force === undefined) return [...fields, ...tissueFields].find((each) => each.kind === kind);
   const label = `Force: ${forceKindLabel(force)}`;
   return { kind, label, unit: "N", help: "Magnitude of the force on each vertex", diverging: false, smallestTop: 1e-4 };
 }

@@ -6,6 +6,7 @@ import { ExportService } from "../gen/phrenic/v1/export_pb";
 import { FrameService } from "../gen/phrenic/v1/frames_pb";
 import { SceneService, SessionService } from "../gen/phrenic/v1/session_pb";
 import { StudyService } from "../gen/phrenic/v1/study_pb";
+import { TissueService } from "../gen/phrenic/v1/tissue_pb";
 import { UploadService } from "../gen/phrenic/v1/upload_pb";
 
 /** Clients of the server's services over one transport: gRPC-web in the page, a router in tests. */
@@ -19,6 +20,7 @@ export interface Api {
   exports: Client<typeof ExportService>;
   uploads: Client<typeof UploadService>;
   studies: Client<typeof StudyService>;
+  tissue: Client<typeof TissueService>;
 }
 
 /** Creates the clients of all services over one transport. */
@@ -33,6 +35,7 @@ export function createApi(transport: Transport): Api {
     exports: createClient(ExportService, transport),
     uploads: createClient(UploadService, transport),
     studies: createClient(StudyService, transport),
+    tissue: createClient(TissueService, transport),
   };
 }
 

@@ -1,6 +1,7 @@
 import * as THREE from "three";
 import type { VertexRef } from "../geometry/vertices";
 import type { BodyView } from "./body_view";
+import type { CutPictures } from "./clipping";
 import { pickVertex, pointerOf } from "./picking";
 
 /** A pointer that moves farther [CSS pixels] or stays down longer [ms] than this turns the view. */
@@ -8,8 +9,9 @@ const maxMovement = 5;
 const maxDuration = 500;
 
 /**
- * Calls `picked` with the vertex under each click; undefined if it meets no body. Returns a function that picks at a place on
- * the canvas [CSS pixels] as a click does, for the keyboard.
+ * Calls `picked` with the vertex under each click; undefined if it meets no body. Of a picture of a cut in front of all
+ * surfaces `inside` gets the place instead [m]. Returns a function that picks at a place on the canvas [CSS pixels] as a click
+ * does, for the keyboard.
  */
 export function enablePicking(
   canvas: HTMLCanvasElement,
@@ -17,11 +19,20 @@ export function enablePicking(
   views: () => BodyView[],
   cut: () => THREE.Plane | undefined,
   picked: (vertex: VertexRef | undefined) => void,
+  pictures: CutPictures,
+  inside: (place: [number, number, number]) => void,
 ): (x: number, y: number) => void {
   const pickAt = (offsetX: number, offsetY: number) => {
     const visible = views().filter(({ group, isFaded }) => group.visible && !isFaded);
     const bodies = visible.map((view) => ({ positions: view.worldPositions(), triangles: view.body.triangles }));
-    const found = pickVertex(pointerOf({ offsetX, offsetY }, canvas), camera, bodies, cut());
+    const pointer = pointerOf({ offsetX, offsetY }, canvas);
+    const found = pickVertex(pointer, camera, bodies, cut());
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(pointer, camera);
+    const place = pictures.hit(caster.ray);
+    const { origin } = caster.ray;
+    const nearer = found === undefined || (place?.distanceTo(origin) ?? Infinity) < found.position.distanceTo(origin);
+    if (place !== undefined && nearer) return inside([place.x, place.y, place.z]);
     picked(found && { body: visible[found.body].body.name, vertex: found.vertex });
   };
   let down: PointerEvent | undefined;

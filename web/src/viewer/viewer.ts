@@ -2,6 +2,7 @@ import * as THREE from "three";
 import type { Body, FrameArrays } from "../geometry/bodies";
 import { computeNormals } from "../geometry/normals";
 import { computeOcclusion } from "../geometry/occlusion";
+import type { AxisPlane, SectionPicture } from "../geometry/section";
 import type { Simplifier } from "../geometry/simplified";
 import type { Surface } from "../geometry/surface";
 import { type Marker, type VertexRef } from "../geometry/vertices";
@@ -9,7 +10,7 @@ import { AdaptiveResolution } from "./adaptive_resolution";
 import { BodyView } from "./body_view";
 import { CameraRig, type Insets, type ViewOrientation } from "./camera_rig";
 import { enablePicking } from "./click_picking";
-import { clippingPlane, type Cut, planeCoordinate } from "./clipping";
+import { axisPlaneOf, clippingPlane, type Cut, CutPictures, planeCoordinate } from "./clipping";
 import { TranslucentSurfaces } from "./ghost";
 import { StudioLights } from "./lights";
 import { Markers } from "./markers";
@@ -63,6 +64,7 @@ export class Viewer {
   private readonly ghost = new TranslucentSurfaces({ color: "#8fd0ff", emissive: "#2d5f86" });
   private readonly comparedSurface = new TranslucentSurfaces({ color: "#ffd166", emissive: "#7a5a12" });
   private readonly markers = new Markers();
+  private readonly cutPictures = new CutPictures();
   private readonly lights: StudioLights;
   private readonly quality: QualityChooser;
   /** True if the bodies have no ambient occlusion yet. */
@@ -98,7 +100,7 @@ export class Viewer {
     this.quality = new QualityChooser(this.software);
     this.lights = new StudioLights(this.scene, this.rig.camera, this.renderer);
     this.lights.setQuality(this.quality.quality);
-    this.scene.add(this.ghost.object, this.comparedSurface.object, this.markers.object);
+    this.scene.add(this.ghost.object, this.comparedSurface.object, this.markers.object, this.cutPictures.object);
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.renderer.setAnimationLoop((now) => this.onAnimationFrame(now));
   }
@@ -238,6 +240,17 @@ export class Viewer {
     return planeCoordinate(cut, this.box);
   }
 
+  /** The plane of the current cut; undefined without one. */
+  get cutPlane(): AxisPlane | undefined {
+    return axisPlaneOf(this.cut, this.box);
+  }
+
+  /** Shows pictures in the plane of the cut, in place of all before. */
+  showInCut(pictures: SectionPicture[]): void {
+    this.cutPictures.show(pictures, this.currentPlane());
+    this.refresh();
+  }
+
   /** Shows bodies as a ghost or its outline, in the state of `arrays` or at rest; undefined removes it. */
   setGhost(of: FrameArrays | "rest" | undefined, bodies: Body[], outline = false): void {
     if (of === undefined) this.ghost.clear();
@@ -275,14 +288,22 @@ export class Viewer {
     new Pulling(this.canvas, this.rig.camera, this.scene, views, pull, changed, plane, told);
   }
 
-  /** Enables picking of vertices by clicks. Returns a function that picks at a place on the canvas [CSS pixels]. */
-  enablePicking(picked: (vertex: VertexRef | undefined) => void): (x: number, y: number) => void {
+  /**
+   * Enables picking of vertices by clicks, and of places in the pictures of a cut [m]. Returns a function that picks at a
+   * place on the canvas [CSS pixels].
+   */
+  enablePicking(
+    picked: (vertex: VertexRef | undefined) => void,
+    inside: (place: [number, number, number]) => void = () => picked(undefined),
+  ): (x: number, y: number) => void {
     return enablePicking(
       this.canvas,
       this.rig.camera,
       () => this.views,
       () => this.currentPlane(),
       picked,
+      this.cutPictures,
+      inside,
     );
   }
 

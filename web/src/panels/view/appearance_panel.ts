@@ -1,5 +1,5 @@
 import type { Coloring } from "../../appearance/coloring";
-import { type FieldKind, fields } from "../../appearance/fields";
+import { type FieldKind, fields, tissueFields } from "../../appearance/fields";
 import type { GhostKind } from "../../appearance/ghosts";
 import type { LayerStyles } from "../../appearance/layer_styles";
 import { make } from "../../dom/elements";
@@ -19,6 +19,7 @@ export interface AppearanceSettings {
   coloring: Coloring;
   labels: Signal<boolean>;
   forceKinds: Signal<string[]>;
+  hasLungs: Signal<boolean>;
   cut: Signal<Cut>;
   /** Returns the position of a cut along its axis [m]. */
   cutAt(cut: Cut): number;
@@ -53,7 +54,7 @@ export function appearancePanel(view: AppearanceSettings): HTMLElement {
   return section(
     "View",
     true,
-    coloringRow(view.coloring, view.forceKinds),
+    coloringRow(view.coloring, view.forceKinds, view.hasLungs),
     transparencyRow(view.layerStyles),
     ghost,
     ...cut,
@@ -64,16 +65,20 @@ export function appearancePanel(view: AppearanceSettings): HTMLElement {
   );
 }
 
-function coloringRow(coloring: Coloring, kinds: Signal<string[]>): HTMLElement {
+function coloringRow(coloring: Coloring, kinds: Signal<string[]>, hasLungs: Signal<boolean>): HTMLElement {
   const options: [FieldKind | "own", string][] = [
     ["own", "Layer colours"],
     ...fields.map(({ kind, label }): [FieldKind, string] => [kind, label]),
   ];
-  const help = "Field that colours the deformable bodies";
+  const help = "Field that colours the deformable bodies, or the lungs";
   const row = choice("coloring-kind", "Colour by", help, options, (kind) =>
     coloring.choose(kind === "own" ? undefined : kind),
   );
   coloring.field.subscribe((kind) => (row.querySelector("select")!.value = kind ?? "own"));
+  const lungs = make("optgroup", { label: "Lung tissue" });
+  lungs.append(...tissueFields.map(({ kind, label }) => make("option", { value: kind }, label)));
+  row.querySelector("select")?.append(lungs);
+  hasLungs.subscribe((has) => (lungs.hidden = !has));
   // The available kinds of force are known later, and change when a vertex is pulled.
   const group = make("optgroup", { label: "Force" });
   row.querySelector("select")?.append(group);
