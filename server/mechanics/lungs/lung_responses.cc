@@ -4,13 +4,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace phrenic {
 namespace {
 
 constexpr int kMostDegree = 5;
-constexpr double kOfDegree = 0.5;       // size of a polynomial relative to one of a degree less
 constexpr double kRidge = 1e-9;         // of the mean diagonal, in least squares
 constexpr int kDegreeOfVertical = 5;    // of the diaphragm's vertical displacement, in x and y
 constexpr int kDegreeOfHorizontal = 2;  // of its horizontal one
@@ -62,7 +60,7 @@ Eigen::MatrixXd NormalParts(const LungTissue& tissue, const std::vector<LungNeig
       const auto& [of, axis, degrees] = candidates[static_cast<size_t>(k)];
       if (of != neighbours[static_cast<size_t>(p)]) continue;
       const double value = along[0][degrees.x()] * along[1][degrees.y()] * along[2][degrees.z()];
-      g(p, k) = tissue.normals()(axis, p) * std::pow(kOfDegree, degrees.sum()) * value;
+      g(p, k) = tissue.normals()(axis, p) * value;
     }
   }
   return g;

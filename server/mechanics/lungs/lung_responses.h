@@ -5,11 +5,10 @@
 // responses of the elastic, sliding tissue (lung_tissue.h) to smooth motions of the surroundings.
 //
 // How the shapes are made. Of each neighbour, the displacement is written in Legendre polynomials over the lung's box:
-// of the diaphragm the vertical part to degree 5 and the horizontal one to degree 2 in x and y; of the wall all parts
-// to degree 3; of the mediastinum one sideways shift. That are 94 candidates; polynomials of degree n are taken as 2^-n
-// as large as constants. P fits them to g by area-weighted least squares. Of their responses those combinations are
-// kept that move the tissue most: the leading eigenvectors of the Gram matrix, until what is left is below kLeftOut of
-// the mean square, at most kMostShapes.
+// of the diaphragm the vertical part to degree 5 and the horizontal one to degree 2 in x and y; of the wall all parts to
+// degree 3; of the mediastinum one sideways shift. These are 94 candidates, which P fits to g by area-weighted least
+// squares. Of their responses those combinations are kept that move the tissue most: the leading eigenvectors of the
+// Gram matrix, until what is left is below kLeftOut of the mean square, at most kMostShapes.
 //
 // What is lost is what is not smooth: tests/physiology/live_lungs_test.cc states the error against the full solution.
 #ifndef PHRENIC_SERVER_MECHANICS_LUNGS_LUNG_RESPONSES_H_
@@ -37,7 +36,7 @@ struct TissueAtPoint {
 // Immutable, thread-safe.
 class LungResponses {
  public:
-  static constexpr int kMostShapes = 40;
+  static constexpr int kMostShapes = 64;
   static constexpr double kLeftOut = 1e-5;
 
   // Factorises the tissue with its free points and solves for all candidates: half a second. `neighbours` are those of
