@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/measures/readings.h"
+#include "server/physiology/live_lungs.h"
 #include "tests/bench/bullet_body.h"
 #include "tests/bench/machine.h"
 #include "tests/bench/plain_springs.h"
@@ -21,7 +22,7 @@ namespace {
 const char kPlain[] = "springs, plain loop with scatter", kSprings[] = "springs";
 const char kEuler[] = "springs and Euler's step", kEulerSingle[] = "springs and Euler's step, single";
 const char kThorax[] = "thorax, the whole step", kThesis[] = "thorax-thesis, the whole step";
-const char kMeasures[] = "thorax' measures, a frame";
+const char kMeasures[] = "thorax' measures, a frame", kLungs[] = "thorax' lung tissue, a reading";
 const char kFew[] = "rigid links, few", kMany[] = "rigid links, ten times as many";
 const char kCache[] = "triad, 12 MB", kMultiplyAdds[] = "multiply-adds";
 
@@ -125,6 +126,8 @@ class Bench {
       benchmark::DoNotOptimize(ReadMeasures(*subjects_.thorax, at));
     };
     table.Register({kMeasures, measure, vertices, "vertex", kThorax});
+    const auto lungs = [this] { benchmark::DoNotOptimize(lungs_.At(thorax_.state, thorax_.parameters)); };
+    table.Register({kLungs, lungs, 0, "", kThorax});
     table.Register(
         {"thorax, compiled from its meshes", [this] { CompileAgain(*subjects_.thorax); }, vertices, "vertex", ""});
     table.Register(
@@ -165,6 +168,7 @@ class Bench {
   Run euler_{subjects_.springs}, euler_single_{subjects_.single_springs}, implicit_{subjects_.springs},
       membrane_{subjects_.membrane}, muscle_{subjects_.muscle};
   Points muscle_force_ = Points::Zero(3, subjects_.muscle->rest.cols());
+  const physiology::LiveLungs lungs_ = *physiology::LiveLungs::Make(*subjects_.thorax);
   Run thorax_{subjects_.thorax}, thesis_{subjects_.thesis}, unlinked_{subjects_.thesis};
   Run few_{subjects_.few_links}, many_{subjects_.many_links};
 #ifdef PHRENIC_BULLET

@@ -1,5 +1,6 @@
 // The static solve: every step ends in equilibrium, f(x) = 0 with v = 0, for bones and muscles at the end of the step.
-// Inertia and friction have no effect.
+// Inertia and friction have no effect. All velocities end as 0, also those of vertices that motions drive, so that
+// forces of velocity vanish in the state that is read: measures of rates, such as a flow, read 0.
 //
 // Newton's method with pseudo-transient continuation (Kelley and Keyes 1998): (M/h^2 + K) dx = f, with h growing as
 // long as steps stay small, so that the last steps are Newton's. Links are solved together with the forces: their

@@ -5,8 +5,8 @@
 // responses of the elastic, sliding tissue (lung_tissue.h) to smooth motions of the surroundings.
 //
 // How the shapes are made. Of each neighbour, the displacement is written in Legendre polynomials over the lung's box:
-// of the diaphragm the vertical part to degree 5 and the horizontal one to degree 2 in x and y; of the wall all parts to
-// degree 3; of the mediastinum one sideways shift. These are 94 candidates, which P fits to g by area-weighted least
+// of the diaphragm the vertical part to degree 5 and the horizontal one to degree 2 in x and y; of the wall all parts
+// to degree 3; of the mediastinum one sideways shift. These are 94 candidates, which P fits to g by area-weighted least
 // squares. Of their responses those combinations are kept that move the tissue most: the leading eigenvectors of the
 // Gram matrix, until what is left is below kLeftOut of the mean square, at most kMostShapes.
 //
