@@ -4,7 +4,7 @@ import { GetTissueResponseSchema } from "../../../web/src/gen/phrenic/v1/tissue_
 import { Lattice } from "../../../web/src/lungs/lattice";
 import { pointOf, TissuePoints } from "../../../web/src/lungs/tissue_points";
 import { TissueQueries } from "../../../web/src/lungs/tissue_queries";
-import { largestStrain, Places, TissueState } from "../../../web/src/lungs/tissue_state";
+import { largestStrain, Places, type TissueKind, TissueState } from "../../../web/src/lungs/tissue_state";
 import { bytesOf, FakeServer } from "../fakes/fake_server";
 
 const edge = 0.014;
@@ -51,9 +51,12 @@ describe("lung tissue", () => {
     const at = [0.027, -0.003, 0.213] as const;
     const place = state.lattice.place(...at);
     affine(...at).forEach((u, k) => expect(state.displacementAt(place)[k]).toBeCloseTo(u, 7));
-    expect(state.valueAt("displacement", place)).toBeCloseTo(1000 * Math.hypot(...affine(...at)), 1);
-    expect(state.valueAt("ventilation", place)).toBeCloseTo(13, 3);
-    expect(state.valueAt("strain", place)).toBeCloseTo(100 * largestStrain(gradient), 3);
+    const value = (kind: TissueKind) => new Places(state.lattice, at).values(state.nodal(kind))[0];
+    expect(value("displacement")).toBeCloseTo(1000 * Math.hypot(...affine(...at)), 1);
+    expect(value("ventilation")).toBeCloseTo(13, 3);
+    expect(value("strain")).toBeCloseTo(100 * largestStrain(gradient), 3);
+    const now = at.map((each, k) => each + affine(...at)[k]);
+    expect(state.reader("ventilation")(now[0], now[1], now[2])).toBeCloseTo(13, 3);
   });
 
   test("IsASumOfItsShapes", () => {

@@ -26,6 +26,8 @@ export class Lattice {
   private readonly cells: [number, number, number];
   /** The cell of each brick. */
   private readonly cellOf: number[] = [];
+  /** Its coordinates, three numbers per brick. */
+  private readonly brickCells: Int32Array;
   /** The brick in each cell, or the nearest one. */
   private readonly nearest: Int32Array;
 
@@ -47,6 +49,7 @@ export class Lattice {
     if (this.shapes.length !== wanted)
       throw new RangeError(`${name}.shapes: ${this.shapes.length} numbers instead of ${wanted}.`);
     this.nearest = this.nearestBricks();
+    this.brickCells = Int32Array.from(this.cellOf.flatMap((cell) => this.coordinates(cell)));
   }
 
   /** Returns the displacement of each node, x y z [m], for the amplitudes of the shapes [m]. */
@@ -61,12 +64,22 @@ export class Lattice {
 
   /** Returns the place of a point at rest [m]; outside the bricks the nearest place of the nearest one. */
   place(x: number, y: number, z: number): Place {
-    const at = [x, y, z].map((each, k) => (each - this.origin[k]) / this.edge);
-    const cell = at.map((each, k) => Math.min(this.cells[k] - 1, Math.max(0, Math.floor(each))));
-    const brick = this.nearest[cell[0] + this.cells[0] * (cell[1] + this.cells[1] * cell[2])];
-    const own = this.coordinates(this.cellOf[brick]);
-    const [a, b, c] = at.map((each, k) => Math.min(1, Math.max(0, each - own[k])));
-    return { brick, local: [a, b, c] };
+    const place: Place = { brick: 0, local: [0, 0, 0] };
+    this.find(x, y, z, place);
+    return place;
+  }
+
+  /** The same, written to `place`, for pictures of many points. */
+  find(x: number, y: number, z: number, place: Place): void {
+    const [nx, ny, nz] = this.cells;
+    const a = (x - this.origin[0]) / this.edge;
+    const b = (y - this.origin[1]) / this.edge;
+    const c = (z - this.origin[2]) / this.edge;
+    const cell = clamped(a, nx) + nx * (clamped(b, ny) + ny * clamped(c, nz));
+    const own = 3 * (place.brick = this.nearest[cell]);
+    place.local[0] = Math.min(1, Math.max(0, a - this.brickCells[own]));
+    place.local[1] = Math.min(1, Math.max(0, b - this.brickCells[own + 1]));
+    place.local[2] = Math.min(1, Math.max(0, c - this.brickCells[own + 2]));
   }
 
   private coordinates(cell: number): [number, number, number] {
@@ -120,8 +133,13 @@ export class Lattice {
   }
 }
 
-/** Returns the trilinear weight of each corner of a brick at a place. */
-export function cornerWeights([x, y, z]: readonly [number, number, number]): number[] {
-  const [u, v, w] = [1 - x, 1 - y, 1 - z];
-  return [u * v * w, x * v * w, u * y * w, x * y * w, u * v * z, x * v * z, u * y * z, x * y * z];
+function clamped(at: number, cells: number): number {
+  return Math.min(cells - 1, Math.max(0, Math.floor(at)));
+}
+
+/** Writes the trilinear weight of each corner of a brick at a place. */
+export function cornerWeights({ local }: Place, weights: Float64Array = new Float64Array(8)): Float64Array {
+  const [x, y, z] = local;
+  for (let c = 0; c < 8; c++) weights[c] = (c & 1 ? x : 1 - x) * (c & 2 ? y : 1 - y) * (c & 4 ? z : 1 - z);
+  return weights;
 }

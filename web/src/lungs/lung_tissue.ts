@@ -62,7 +62,8 @@ export class LungTissue {
       if (state === undefined) return [];
       const outline = outlineOf(positionsOf(body, arrays), body.triangles, plane, sectionStep);
       if (outline === undefined) return [];
-      return [paintSection(outline, plane, sectionStep, (...at) => color(state.valueAt(kind, state.placeOf(...at))))];
+      const read = state.reader(kind);
+      return [paintSection(outline, plane, sectionStep, (x, y, z) => color(read(x, y, z)))];
     });
   }
 

@@ -15,9 +15,9 @@ export class Places {
     this.nodes = new Int32Array(8 * this.count);
     this.weights = new Float32Array(8 * this.count);
     for (let i = 0; i < this.count; i++) {
-      const { brick, local } = lattice.place(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
-      this.nodes.set(lattice.corners.subarray(8 * brick, 8 * brick + 8), 8 * i);
-      this.weights.set(cornerWeights(local), 8 * i);
+      const place = lattice.place(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
+      this.nodes.set(lattice.corners.subarray(8 * place.brick, 8 * place.brick + 8), 8 * i);
+      this.weights.set(cornerWeights(place), 8 * i);
     }
   }
 
@@ -56,32 +56,49 @@ export class TissueState {
 
   /** Returns the displacement of tissue whose place at rest is given [m]. */
   displacementAt(place: Place): [number, number, number] {
-    const u = this.displacement;
     const sum: [number, number, number] = [0, 0, 0];
-    cornerWeights(place.local).forEach((weight, c) => {
-      const first = 3 * this.lattice.corners[8 * place.brick + c];
-      for (let k = 0; k < 3; k++) sum[k] += weight * u[first + k];
-    });
+    this.addDisplacement(place, cornerWeights(place), sum);
     return sum;
   }
 
-  /** Returns the place at rest of the tissue that is at a point now [m]: x - u, with u taken at x and once improved. */
+  /** Returns the place at rest of the tissue that is at a point now [m]: x - u, with u taken at x and twice improved. */
   placeOf(x: number, y: number, z: number): Place {
-    let place = this.lattice.place(x, y, z);
-    for (let i = 0; i < 2; i++) {
-      const [dx, dy, dz] = this.displacementAt(place);
-      place = this.lattice.place(x - dx, y - dy, z - dz);
-    }
+    const place: Place = { brick: 0, local: [0, 0, 0] };
+    this.findNow(x, y, z, place, new Float64Array(8), [0, 0, 0]);
     return place;
   }
 
-  /** Returns a field of the nodes at a place. */
-  valueAt(kind: TissueKind, place: Place): number {
+  /** Returns a function that reads a field of the tissue that is at a point now [m], for pictures of many points. */
+  reader(kind: TissueKind): (x: number, y: number, z: number) => number {
     const field = this.nodal(kind);
-    return cornerWeights(place.local).reduce(
-      (sum, weight, c) => sum + weight * field[this.lattice.corners[8 * place.brick + c]],
-      0,
-    );
+    const { corners } = this.lattice;
+    const place: Place = { brick: 0, local: [0, 0, 0] };
+    const [weights, u] = [new Float64Array(8), [0, 0, 0]];
+    return (x, y, z) => {
+      this.findNow(x, y, z, place, weights, u);
+      cornerWeights(place, weights);
+      let sum = 0;
+      for (let c = 0; c < 8; c++) sum += weights[c] * field[corners[8 * place.brick + c]];
+      return sum;
+    };
+  }
+
+  private findNow(x: number, y: number, z: number, place: Place, weights: Float64Array, u: number[]): void {
+    this.lattice.find(x, y, z, place);
+    for (let i = 0; i < 2; i++) {
+      u.fill(0);
+      this.addDisplacement(place, cornerWeights(place, weights), u);
+      this.lattice.find(x - u[0], y - u[1], z - u[2], place);
+    }
+  }
+
+  private addDisplacement({ brick }: Place, weights: Float64Array, sum: number[]): void {
+    for (let c = 0; c < 8; c++) {
+      const first = 3 * this.lattice.corners[8 * brick + c];
+      sum[0] += weights[c] * this.displacement[first];
+      sum[1] += weights[c] * this.displacement[first + 1];
+      sum[2] += weights[c] * this.displacement[first + 2];
+    }
   }
 
   /** Computes both in the middle of each brick, and the mean over the bricks at a node, by their part inside. */
