@@ -51,7 +51,7 @@ class LungResponsesTest : public testing::Test {
 TEST_F(LungResponsesTest, MovesAsTheFullSolutionWhereTheSurroundingsMoveSmoothly) {
   const Points full = tissue_->SolveVectors(Breath());
   const Points reduced = lung_->Nodes(lung_->Amplitudes(Breath()));
-  EXPECT_LT((reduced - full).norm(), 0.02 * full.norm());
+  EXPECT_LT((reduced - full).norm(), 0.03 * full.norm());
 }
 
 TEST_F(LungResponsesTest, RestsWhereNothingMoves) {

@@ -13,6 +13,7 @@ export class TissueCard {
 
   constructor(private readonly points: TissuePoints) {
     const field = make("input", {
+      type: "text",
       id: "tissue-point",
       placeholder: "x, y, z",
       ariaLabel: "Place at rest inside a lung: left, back, up [mm]",
