@@ -1,5 +1,5 @@
 import type { Coloring } from "../appearance/coloring";
-import { fieldInfo, forceKindOf } from "../appearance/fields";
+import { fieldInfo, forceKindOf, tissueKindOf } from "../appearance/fields";
 import type { FilmStage } from "../film/pictures";
 import type { DisplayedFrame } from "../frames/frame_buffer";
 import { pictureBackground, type Viewer } from "../viewer/viewer";
@@ -12,10 +12,11 @@ export function filmStage(
 ): FilmStage {
   return {
     background: pictureBackground,
-    refusal: () =>
-      forceKindOf(coloring?.field.value) === undefined
-        ? undefined
-        : "A recorded breath has no forces: choose another field for the colours.",
+    refusal: () => {
+      const kind = coloring?.field.value;
+      if (forceKindOf(kind) === undefined && tissueKindOf(kind) === undefined) return undefined;
+      return "A recorded breath has no forces and no lung tissue: choose another field for the colours.";
+    },
     colors: () => {
       const [info, scale] = [fieldInfo(coloring?.field.value), coloring?.scale.value];
       return info === undefined || scale === undefined ? undefined : { label: info.label, scale };

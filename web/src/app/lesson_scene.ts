@@ -1,5 +1,5 @@
 import { create } from "@bufbuild/protobuf";
-import { fields } from "../appearance/fields";
+import { fields, tissueFields } from "../appearance/fields";
 import type { LayerStyles } from "../appearance/layer_styles";
 import { type LessonView, LessonViewSchema } from "../gen/phrenic/v1/lesson_pb";
 import type { Session } from "../gen/phrenic/v1/session_pb";
@@ -9,9 +9,12 @@ import { cutKinds } from "../viewer/clipping";
 import { viewNames } from "../viewer/named_views";
 import type { SceneTools } from "./scene_tools";
 
+/** The fields that a step may show. */
+const colourable = [...fields, ...tissueFields];
+
 /** Returns the names that the lessons of a scene with these layers may use. */
 export function sceneNames(scene: string, layers: string[]): SceneNames {
-  const colourings = ["own", ...fields.map(({ kind }) => kind)];
+  const colourings = ["own", ...colourable.map(({ kind }) => kind)];
   return { scene, cameras: viewNames, cuts: cutKinds, colourings, layers };
 }
 
@@ -44,7 +47,7 @@ export function showLessonView(
   if (eye !== undefined && target !== undefined) tools.lookFrom({ eye, target });
   const kind = cutKinds.find((name) => name === cut);
   if (kind !== undefined) tools.cut.set({ kind, fraction: cutPosition ?? 0.5, flipped: cutFlipped });
-  if (colouring !== "") tools.coloring.choose(fields.find((field) => field.kind === colouring)?.kind);
+  if (colouring !== "") tools.coloring.choose(colourable.find((field) => field.kind === colouring)?.kind);
   for (const { layer, visible } of layerStyles.all.value) {
     const wanted = !hiddenLayers.includes(layer) && layerStyles.shownByScene(layer);
     if (visible !== wanted) layerStyles.change(layer, { visible: wanted });
@@ -54,7 +57,7 @@ export function showLessonView(
 /** Returns what is shown now as the view of a step. */
 export function keptLessonView(tools: SceneTools, layerStyles: LayerStyles): LessonView {
   const { kind, fraction, flipped } = tools.cut.value;
-  const colouring = fields.find((each) => each.kind === tools.coloring.field.value)?.kind ?? "own";
+  const colouring = colourable.find((each) => each.kind === tools.coloring.field.value)?.kind ?? "own";
   const hidden = layerStyles.all.value.filter(({ layer, visible }) => !visible && layerStyles.shownByScene(layer));
   return create(LessonViewSchema, {
     pose: tools.pose,
