@@ -103,7 +103,10 @@ export function paintSection(
         const covered = Math.min(i + 1, to) - Math.max(i, from);
         point[a] = low[0] + (i + 0.5) * step;
         const pixel = 4 * (i + width * j);
-        rgba.set(color(point[0], point[1], point[2]), pixel);
+        const rgb = color(point[0], point[1], point[2]);
+        rgba[pixel] = rgb[0];
+        rgba[pixel + 1] = rgb[1];
+        rgba[pixel + 2] = rgb[2];
         rgba[pixel + 3] = Math.min(255, rgba[pixel + 3] + Math.round(255 * covered));
       }
     }

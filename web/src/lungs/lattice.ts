@@ -71,7 +71,9 @@ export class Lattice {
 
   /** The same, written to `place`, for pictures of many points. */
   find(x: number, y: number, z: number, place: Place): void {
-    const [nx, ny, nz] = this.cells;
+    const nx = this.cells[0];
+    const ny = this.cells[1];
+    const nz = this.cells[2];
     const a = (x - this.origin[0]) / this.edge;
     const b = (y - this.origin[1]) / this.edge;
     const c = (z - this.origin[2]) / this.edge;
@@ -139,7 +141,10 @@ function clamped(at: number, cells: number): number {
 
 /** Writes the trilinear weight of each corner of a brick at a place. */
 export function cornerWeights({ local }: Place, weights: Float64Array = new Float64Array(8)): Float64Array {
-  const [x, y, z] = local;
+  // No destructuring of arrays: it is slow, and pictures have thousands of points.
+  const x = local[0];
+  const y = local[1];
+  const z = local[2];
   for (let c = 0; c < 8; c++) weights[c] = (c & 1 ? x : 1 - x) * (c & 2 ? y : 1 - y) * (c & 4 ? z : 1 - z);
   return weights;
 }

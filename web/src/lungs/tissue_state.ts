@@ -86,7 +86,7 @@ export class TissueState {
   private findNow(x: number, y: number, z: number, place: Place, weights: Float64Array, u: number[]): void {
     this.lattice.find(x, y, z, place);
     for (let i = 0; i < 2; i++) {
-      u.fill(0);
+      u[0] = u[1] = u[2] = 0;
       this.addDisplacement(place, cornerWeights(place, weights), u);
       this.lattice.find(x - u[0], y - u[1], z - u[2], place);
     }
