@@ -58,7 +58,8 @@ test("TheInsideOfTheLungsIsColouredInACutAndFollowed", async () => {
     await page.waitForTimeout(800);
   }
   expect(await page.locator("#tissue tbody tr").count()).toBe(2);
-  await page.locator('.tile[data-graph="tissue-displacement"]').waitFor();
-  await page.locator('.tile[data-graph="tissue-regions"]').waitFor();
+  await server.phrenic("step", "lungs", "100");
+  await page.locator('.tile[data-graph="tissue-displacement"]').waitFor({ state: "attached" });
+  await page.locator('.tile[data-graph="tissue-regions"]').waitFor({ state: "attached" });
   expect(viewer.consoleErrors).toEqual([]);
 });
