@@ -60,6 +60,6 @@ test("TheInsideOfTheLungsIsColouredInACutAndFollowed", async () => {
   expect(await page.locator("#tissue tbody tr").count()).toBe(2);
   await server.phrenic("step", "lungs", "100");
   await page.locator('.tile[data-graph="tissue-displacement"]').waitFor({ state: "attached" });
-  await page.locator('.tile[data-graph="tissue-regions"]').waitFor({ state: "attached" });
+  await page.locator('.tile[data-graph="tissue-lung-right"]').waitFor({ state: "attached" });
   expect(viewer.consoleErrors).toEqual([]);
 });

@@ -8,4 +8,6 @@ export interface VertexRef {
 export interface Marker {
   position: [number, number, number];
   color: string;
+  /** True if a cut does not hide it: it is inside a body, where the cut is to show it. */
+  unclipped?: boolean;
 }

@@ -41,7 +41,7 @@ export class LungTools {
     return this.points.all.value.flatMap((point, i) => {
       const lung = this.points.readings.value[i]?.lung;
       const position = lung === undefined ? undefined : this.tissue.nowOf(lung, point);
-      return position === undefined ? [] : [{ position, color: curveColor(i) }];
+      return position === undefined ? [] : [{ position, color: curveColor(i), unclipped: true }];
     });
   }
 }

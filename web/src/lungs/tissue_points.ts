@@ -57,8 +57,19 @@ export class TissuePoints {
     return [
       graph("tissue-displacement", "Lung tissue: displacement", "mm", 1e3, points, this.displacements),
       graph("tissue-ventilation", "Lung tissue: volume gained", "%", 100, points, this.ventilations),
-      graph("tissue-regions", "Lungs: volume gained", "%", 100, [...this.regions.series.keys()], this.regions),
+      ...this.regionGraphs(),
     ].filter(({ spec }) => spec.curves.length > 0);
+  }
+
+  /** A graph for each lung. */
+  private regionGraphs(): { spec: GraphSpec; history: TimeSeries }[] {
+    const keys = [...this.regions.series.keys()];
+    const lungs = [...new Set(keys.map((key) => key.slice(0, key.lastIndexOf(" "))))];
+    return lungs.map((lung) => {
+      const own = keys.filter((key) => key.startsWith(`${lung} `));
+      const names = own.map((key) => key.slice(lung.length + 1));
+      return graph(`tissue-${lung}`, `${lung}: volume gained`, "%", 100, own, this.regions, names);
+    });
   }
 
   private change(points: TissuePoint[]): void {
@@ -76,8 +87,9 @@ function graph(
   factor: number,
   keys: string[],
   history: TimeSeries,
+  names = keys,
 ): { spec: GraphSpec; history: TimeSeries } {
-  return { spec: { id, title, unit, curves: keys.map((key) => ({ key, name: key, factor })) }, history };
+  return { spec: { id, title, unit, curves: keys.map((key, i) => ({ key, name: names[i], factor })) }, history };
 }
 
 /** Formats "60, 20, 250". */

@@ -10,10 +10,11 @@ export class Markers {
   show(markers: Marker[]): void {
     while (this.object.children.length > markers.length) this.object.remove(this.object.children.at(-1)!);
     while (this.object.children.length < markers.length) this.object.add(this.make());
-    markers.forEach(({ position, color }, i) => {
+    markers.forEach(({ position, color, unclipped = false }, i) => {
       const mesh = this.object.children[i] as THREE.Mesh<THREE.SphereGeometry, THREE.MeshBasicMaterial>;
       mesh.position.fromArray(position);
       mesh.material.color.set(color);
+      setUnclipped(mesh.material, unclipped);
     });
   }
 
@@ -34,4 +35,16 @@ export class Markers {
     mesh.renderOrder = 5;
     return mesh;
   }
+}
+
+/** Exempts a material from the planes that clip the scene, or not. */
+function setUnclipped(material: THREE.MeshBasicMaterial, unclipped: boolean): void {
+  if (material.userData.unclipped === unclipped) return;
+  material.userData.unclipped = unclipped;
+  const unchanged = "#include <clipping_planes_fragment>";
+  material.customProgramCacheKey = () => `unclipped ${unclipped}`;
+  material.onBeforeCompile = (shader) => {
+    if (unclipped) shader.fragmentShader = shader.fragmentShader.replace(unchanged, "");
+  };
+  material.needsUpdate = true;
 }

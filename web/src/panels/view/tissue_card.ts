@@ -49,7 +49,7 @@ export class TissueCard {
     const name = pointLabel(point);
     const leave = make("button", { type: "button", className: "small", ariaLabel: `Stop following ${name}` }, "Stop");
     leave.onclick = () => this.points.remove(point);
-    const head = make("th", { scope: "row" }, swatch, ` ${name}`);
+    const head = make("th", { scope: "row" }, make("span", { className: "key" }, swatch, name));
     return make("tr", {}, head, make("td"), make("td"), make("td"), make("td", {}, leave));
   }
 
