@@ -1,8 +1,8 @@
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { endAll, startAll, ViewerPage } from "./browser";
-import { canvasPicture, changedFraction } from "./pixels";
-import type { Server } from "./server";
+import { endAll, startAll, ViewerPage } from "../browser";
+import { canvasPicture, changedFraction } from "../pixels";
+import type { Server } from "../server";
 
 let server: Server;
 let browser: Browser;
