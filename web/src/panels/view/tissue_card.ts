@@ -3,7 +3,7 @@ import { curveColor } from "../../graphs/colors";
 import { pointLabel, pointOf, type TissuePoint, type TissuePoints } from "../../lungs/tissue_points";
 import type { PointReading } from "../../gen/phrenic/v1/tissue_pb";
 
-const heads = ["At rest, mm", "mm", "Volume %", "Strain %", ""];
+const heads = ["At rest, mm", "mm", "Volume %", "Strain %"];
 
 /** A card with the points inside the lungs that this viewer follows, and a field for another one. */
 export class TissueCard {
@@ -31,7 +31,7 @@ export class TissueCard {
     };
     this.note.textContent = help;
     this.note.setAttribute("role", "status");
-    const cells = heads.map((text) => make("th", { scope: "col" }, text));
+    const cells = [...heads.map((text) => make("th", { scope: "col" }, text)), make("td")];
     const table = make("table", { className: "figures" }, make("thead", {}, make("tr", {}, ...cells)), this.rows);
     const title = make("h2", {}, "Inside the lungs");
     this.element = make("section", { id: "tissue", className: "card", hidden: true }, title, table, form, this.note);
