@@ -80,10 +80,6 @@ export class SecondView {
     this.element = make("div", { id: "second-view" }, canvas, annotations.element, nameLabels);
     this.forces = new ForceQueries(api, sessionId);
     this.lungs = new LungTissue(api, sessionId);
-    this.lungs.queries.readings.subscribe(() => {
-      this.updateFields();
-      this.updateColors();
-    });
     this.colorizer = new VertexColorizer(this.forces, this.lungs);
     this.ghosts = new GhostSelector(this.viewer, () => this.frames.displayed?.arrays, primary.tools.ghost);
     this.connection = new SessionConnection(api, sessionId, this.connectionListener(), clock);
@@ -164,6 +160,10 @@ export class SecondView {
     });
     coloring.scale.subscribe(() => this.updateColors());
     this.forces.magnitudes.subscribe(() => this.updateColors());
+    this.lungs.queries.readings.subscribe(() => {
+      this.updateFields();
+      this.updateColors();
+    });
   }
 
   private viewerHost(): ViewerHost {
