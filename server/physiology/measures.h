@@ -70,6 +70,7 @@ double PleuralFall(const Recording& r, const Recording&);               // [cmH2
 double PleuralFallShare(const Recording& r, const Recording& other);    // [1]
 double PleuralRise(const Recording& r, const Recording&);               // over that at the beginning [cmH2O]
 double FlowOut(const Recording& r, const Recording&);                   // greatest expiratory flow [l/s]
+double FlowOutShare(const Recording& r, const Recording& other);        // of the other's [1]
 double PleuralRiseShare(const Recording& r, const Recording& other);    // of the other's [1]
 double FlowShare(const Recording& r, const Recording& other);           // greatest inspiratory flow, of the other's [1]
 double WorkShare(const Recording& r, const Recording& other);           // of a litre breathed in, over the other's [1]

@@ -88,6 +88,7 @@ double PleuralRise(const Recording& r, const Recording&) {
 }
 
 double FlowOut(const Recording& r, const Recording&) { return -kLitres * Least(r, kFlow); }
+double FlowOutShare(const Recording& r, const Recording& other) { return FlowOut(r, r) / FlowOut(other, other); }
 double PleuralRiseShare(const Recording& r, const Recording& other) {
   return PleuralRise(r, r) / PleuralRise(other, other);
 }

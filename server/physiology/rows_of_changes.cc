@@ -44,6 +44,7 @@ constexpr Row kChangedRows[] = {
     {"cough, weak abdominal muscles", "greatest flow out", "l/s", 0, 4.5, &FlowOut, kAir, "under 270 l/min is weak"},
     {"cough, open glottis", "pleural pressure, rise, of the cough's", "1", 0, 0.95, &PleuralRiseShare, kAir, kSign,
      "cough"},
+    {"cough, open glottis", "greatest flow out, of the cough's", "1", 0, 0.98, &FlowOutShare, kAir, kSign, "cough"},
     {"quiet, stiff lungs", "tidal volume lost", "%", 25, 60, &TidalVolumeLost, kAir, kRange, "quiet"},
     {"quiet, stiff lungs", "descent of the right dome, of health's", "%", 0, 99, &DescentShare, kAir, kSign, "quiet"},
     {"quiet, narrow airways", "greatest flow in, of health's", "1", 0, 0.95, &FlowShare, kAir, kSign, "quiet"},

@@ -236,8 +236,27 @@ TEST_F(BreathingThorax, ACoughIsAShutGlottisThatOpensUnderPressure) {
               flow(cough), flow(open), flow(weak), pressure(cough), pressure(open), pressure(weak));
   EXPECT_GT(flow(cough), 4);
   EXPECT_LT(pressure(open), 0.95 * pressure(cough));
+  EXPECT_LT(flow(open), 0.96 * flow(cough));
   EXPECT_LT(flow(weak), 0.5 * flow(cough));
   EXPECT_LT(pressure(weak), 0.3 * pressure(cough));
+}
+
+// What makes the shut glottis raise the flow: ribs that bear the pressure. Where only the belly presses, it blows up
+// the cage instead, and the air that it has moved there comes out slowly.
+TEST_F(BreathingThorax, AValsalvaMovesNothingBecauseTheRibsPressToo) {
+  const Curves effort = Breathe("valsalva");
+  std::printf("Valsalva: %.0f Pa; pump handle %.3f; displaced by the abdomen %.3f l\n",
+              effort.Range("pleural pressure", 4), effort.Range("pump handle", 4),
+              effort.Range("displaced by the abdomen", 4) / kLitre);
+  EXPECT_GT(effort.Range("pleural pressure", 4), 0.8 * 0.4 * 10000);
+  EXPECT_LT(effort.Range("pump handle", 4), 0.1);
+  EXPECT_LT(effort.Range("displaced by the abdomen", 4), 0.1 * kLitre);
+}
+
+TEST_F(BreathingThorax, ResidualVolumeIsAQuarterOfTotalCapacity) {
+  const Curves breath = Breathe("vital-capacity");
+  const double least = breath.Least("lung volume", 8), range = breath.Range("lung volume", 8);
+  EXPECT_NEAR(least / (least + range), 0.25, 0.03);
 }
 
 // Where ribs follow the pressure instead of the muscles, more of the same drive is lost.

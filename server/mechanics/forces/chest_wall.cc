@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/mechanics/breathing/expiratory_muscles.h"
 
 namespace phrenic {
 namespace {
@@ -31,11 +32,14 @@ absl::StatusOr<std::unique_ptr<Force>> ChestWall::Make(const v1::ChestWall& scen
   force->stiffening_below_rest_ = scene.stiffening_below_rest();
   force->shortening_loss_ = scene.shortening_loss();
   force->expiratory_share_ = scene.expiratory_share();
+  force->expiratory_pressure_ = scene.expiratory_pressure();
+  force->expiratory_range_ = scene.expiratory_range();
   const std::array<const Coordinate*, 2> coordinates = {&(*wall)->pump, &(*wall)->bucket};
   for (size_t i = 0; i < 2; ++i) {
     Handle& handle = force->handles_[i];
     handle.coordinate = *coordinates[i];
     handle.stiffness = slope[static_cast<Eigen::Index>(i)] * slope.sum() / scene.compliance();
+    handle.slope = slope[static_cast<Eigen::Index>(i)];
     handle.share = i == 0 ? scene.pump_share() : scene.bucket_share();
     handle.damping = scene.damping_rate() * InertiaOf(handle.coordinate, builder.model);
     if (!(handle.stiffness > 0)) {
@@ -44,6 +48,9 @@ absl::StatusOr<std::unique_ptr<Force>> ChestWall::Make(const v1::ChestWall& scen
     }
   }
   if (absl::Status status = force->AddParts(scene, path, builder); !status.ok()) return status;
+  if (force->advances_scalars()) {
+    force->expiration_ = builder.AddInternalScalars(force->name() + ":expiration", "1", 1);
+  }
   builder.ReportElement(
       "force", force->name(), 2 + static_cast<std::int64_t>(force->parts_.size()), "coordinates",
       absl::StrFormat("K = %.3g and %.3g J", force->handles_[0].stiffness, force->handles_[1].stiffness));
@@ -89,6 +96,26 @@ double ChestWall::Activation(const EvalContext& at, double share) const {
   return parameters.muscle_strength() * (share * raise - lower);
 }
 
+void ChestWall::SetScalarRates(const EvalContext& at, Eigen::VectorXd& rates) const {
+  if (advances_scalars()) rates[expiration_] = ExpiratoryRate(at, at.scalars.q[expiration_]);
+}
+
+void ChestWall::AdvanceScalars(const EvalContext& end, std::int64_t, double dt, ScalarState& scalars) const {
+  if (advances_scalars()) scalars.q[expiration_] = AdvanceExpiratory(end, dt, scalars.q[expiration_]);
+}
+
+double ChestWall::Expiratory(const Handle& handle, const EvalContext& at, double k) const {
+  if (!advances_scalars()) return 0;
+  const double activation = at.parameters.muscle_strength() * at.scalars.q[expiration_];
+  return -handle.slope * expiratory_pressure_ * activation * std::clamp(1 + k / expiratory_range_, 0.0, 1.0);
+}
+
+double ChestWall::ExpiratoryStiffness(const Handle& handle, const EvalContext& at, double k) const {
+  if (!advances_scalars() || k > 0 || k < -expiratory_range_) return 0;
+  const double activation = at.parameters.muscle_strength() * at.scalars.q[expiration_];
+  return handle.slope * expiratory_pressure_ * activation / expiratory_range_;
+}
+
 const ChestWall::Part* ChestWall::Sides() const {
   return !parts_.empty() && parts_.front().part == kCageSides ? &parts_.front() : nullptr;
 }
@@ -105,6 +132,7 @@ std::array<ChestWall::HalfHandle, 2> ChestWall::Halves(const Handle& handle, dou
     half.beyond = k + half.sign * apart;
     half.stiffness = Stiffness(handle, at, half.beyond) / (2 * compliances[side]);
     half.pull = handle.stiffness / 2 * handle.share * Activation(at, muscles[side]);
+    half.press = Expiratory(handle, at, k + half.sign * tilt) / 2;
   }
   return halves;
 }
@@ -125,7 +153,7 @@ void ChestWall::AddForceOfSides(const EvalContext& at, MutablePoints f) const {
     const Handle& handle = handles_[i];
     double force = handle.rest_load - handle.damping * handle.coordinate.Rate(at.v);
     for (const HalfHandle& half : Halves(handle, tilt, at)) {
-      const double of_half = shares[i] * half.pull - half.stiffness * half.beyond;
+      const double of_half = shares[i] * half.pull + half.press - half.stiffness * half.beyond;
       force += of_half;
       apart += half.sign * of_half;
     }
@@ -158,7 +186,8 @@ void ChestWall::AddForce(const EvalContext& at, MutablePoints f) const {
     const double k = handle.coordinate.Value(at.x);
     const double pull = handle.stiffness * handle.share * shares[i] * activation;
     const double damping = handle.damping * handle.coordinate.Rate(at.v);
-    handle.coordinate.AddForce(handle.rest_load - Stiffness(handle, at, k) * k - damping + pull, f);
+    const double press = Expiratory(handle, at, k);
+    handle.coordinate.AddForce(handle.rest_load - Stiffness(handle, at, k) * k - damping + pull + press, f);
   }
 }
 
@@ -166,7 +195,8 @@ void ChestWall::AddStiffness(const EvalContext& at, StiffnessSink& sink) const {
   for (const Handle& handle : handles_) {
     const Coordinate& c = handle.coordinate;
     Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
-    block(c.axis, c.axis) = Stiffness(handle, at, c.Value(at.x)) / (c.scale * c.scale);
+    const double k = c.Value(at.x);
+    block(c.axis, c.axis) = (Stiffness(handle, at, k) + ExpiratoryStiffness(handle, at, k)) / (c.scale * c.scale);
     sink.Add(c.vertex, c.vertex, block);
   }
   for (const Part& part : parts_) {

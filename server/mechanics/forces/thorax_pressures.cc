@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/mechanics/breathing/expiratory_muscles.h"
 
 namespace phrenic {
 namespace {
@@ -21,18 +22,12 @@ constexpr std::array<Force::Output, 8> kThoraxOutputs = {{{"volume", "m^3"},
                                                           {"displaced_volume", "m^3"}}};
 constexpr double kLeastRoom = 0.02;  // of a lung's room: the curve continues along its tangent below
 
-constexpr double kActivationTime = 0.1;  // of the expiratory muscles [s]
-constexpr double kAtmosphere = 101325;   // [Pa]
-constexpr double kClosingRange = 0.3;    // of the closing volume, over which the airways of a lung close
-constexpr double kMostClosed = 1000;     // the resistance of closed airways over that of open ones
-constexpr double kCollapsed = 0.3;       // volume of a collapsed lung, of that at rest
+constexpr double kAtmosphere = 101325;  // [Pa]
+constexpr double kClosingRange = 0.3;   // of the closing volume, over which the airways of a lung close
+constexpr double kMostClosed = 1000;    // the resistance of closed airways over that of open ones
+constexpr double kCollapsed = 0.3;      // volume of a collapsed lung, of that at rest
 
 double WithSign(size_t side) { return side == 0 ? 1 : -1; }
-
-// Returns what the activation of the expiratory muscles tends to.
-double ExpiratoryDrive(const EvalContext& at) {
-  return at.parameters.apply_muscles() ? at.parameters.expiratory_activation() * at.expiration : 0;
-}
 
 }  // namespace
 
@@ -241,11 +236,11 @@ double ThoraxPressures::GasPressure(const EvalContext& at, const Sides& now) con
 }
 
 void ThoraxPressures::SetScalarRates(const EvalContext& at, Eigen::VectorXd& rates) const {
-  rates[expiration_] = (ExpiratoryDrive(at) - at.scalars.q[expiration_]) / kActivationTime;
+  rates[expiration_] = ExpiratoryRate(at, at.scalars.q[expiration_]);
 }
 
 void ThoraxPressures::AdvanceScalars(const EvalContext& end, std::int64_t, double dt, ScalarState& scalars) const {
-  scalars.q[expiration_] += dt / (kActivationTime + dt) * (ExpiratoryDrive(end) - scalars.q[expiration_]);
+  scalars.q[expiration_] = AdvanceExpiratory(end, dt, scalars.q[expiration_]);
   double &closed = scalars.q[first_scalar_], &volume = scalars.q[first_scalar_ + 1];
   if (end.airway_closed && closed == 0) volume = Volume(SidesAt(end, SlopesAt(end)));
   closed = end.airway_closed ? 1 : 0;
