@@ -8,11 +8,11 @@
 #include "server/anatomy/cartilage.h"
 #include "server/anatomy/diaphragm_mesh.h"
 #include "server/anatomy/dimensions.h"
-#include "server/anatomy/disc.h"
 #include "server/anatomy/heart.h"
 #include "server/anatomy/inner_cage.h"
 #include "server/anatomy/lung.h"
 #include "server/anatomy/middle_sheet.h"
+#include "server/anatomy/physique.h"
 #include "server/anatomy/rib.h"
 #include "server/anatomy/sternum.h"
 #include "server/anatomy/vertebra.h"
@@ -225,6 +225,21 @@ std::int64_t EstimateVertices(const v1::Anatomy& part, double resolution_mm, v1:
   if (!CheckPart(part).ok() || !CheckResolution(part, resolution_mm).ok()) return 0;
   const double edge = ResolutionOf(part, resolution_mm, sheet);
   return static_cast<std::int64_t>(Area(part.structure(), sheet) / (edge * edge));
+}
+
+absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, const v1::Generated& shape) {
+  const PhysiqueMap map(shape.physique());
+  if (map.IsIdentity()) return Generate(part, shape.resolution_mm(), shape.sheet());
+  if (part.structure() == v1::STRUCTURE_INNER_CAGE) {
+    if (absl::Status status = CheckResolution(part, shape.resolution_mm()); !status.ok()) return status;
+    Mesh cage = InnerCage(ResolutionOf(part, shape.resolution_mm(), shape.sheet()), map);
+    cage.vertices *= kMillimetre;
+    return cage;
+  }
+  absl::StatusOr<Mesh> mesh = Generate(part, shape.resolution_mm(), shape.sheet());
+  if (!mesh.ok()) return mesh;
+  for (auto vertex : mesh->vertices.colwise()) vertex = kMillimetre * map(vertex / kMillimetre);
+  return mesh;
 }
 
 absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm, v1::Sheet sheet) {

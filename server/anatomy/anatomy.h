@@ -19,6 +19,10 @@ namespace phrenic::anatomy {
 // structure does not exist (rib 13, a lung without a side), is no sheet, or the resolution is out of range.
 absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, double resolution_mm, v1::Sheet sheet = v1::SHEET_UNSPECIFIED);
 
+// Returns the structure of a person with the shape's physique: that of the adult, carried by PhysiqueMap (physique.h).
+// Errors as above; without a physique the same bits.
+absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, const v1::Generated& shape);
+
 // Returns about how many vertices Generate gives, without generating; 0 for a part that does not exist.
 std::int64_t EstimateVertices(const v1::Anatomy& part, double resolution_mm, v1::Sheet sheet = v1::SHEET_UNSPECIFIED);
 

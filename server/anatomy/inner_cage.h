@@ -5,6 +5,7 @@
 #ifndef PHRENIC_SERVER_ANATOMY_INNER_CAGE_H_
 #define PHRENIC_SERVER_ANATOMY_INNER_CAGE_H_
 
+#include "server/anatomy/physique.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic::anatomy {
@@ -20,6 +21,10 @@ namespace phrenic::anatomy {
 // diagonals mirror each other in x = 0. Below z = 264 mm each row is seen whole from the axis x = 0, y = -60 mm; from
 // one further back the flanks of the vertebral column hide the gutters beside it. Deterministic and thread-safe.
 Mesh InnerCage(double edge_length);
+
+// Returns the tube of a person: the same grid on the surface to which the map carries the adult's. Its rows are
+// horizontal still, evenly from z where the map carries the origin to the highest one that every meridian reaches.
+Mesh InnerCage(double edge_length, const PhysiqueMap& map);
 
 }  // namespace phrenic::anatomy
 

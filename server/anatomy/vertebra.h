@@ -1,4 +1,5 @@
-// Thoracic and upper lumbar vertebrae: body, pedicles, laminae, spinous, transverse and articular processes.
+// Thoracic and upper lumbar vertebrae (body, pedicles, laminae, spinous, transverse and articular processes), and the
+// discs between them.
 #ifndef PHRENIC_SERVER_ANATOMY_VERTEBRA_H_
 #define PHRENIC_SERVER_ANATOMY_VERTEBRA_H_
 
@@ -14,6 +15,13 @@ Mesh Vertebra(int number, double edge_length);
 
 // Returns the body of vertebra 1 to 15 at its position, without its arch and processes.
 Field VertebralBodyField(int number);
+
+inline constexpr int kDiscs = 14;  // T1/T2 to L2/L3
+
+// Returns disc 1 to 14, below the vertebra of the same number [mm], with edges of at most 3.4 mm: an elliptic cylinder
+// a little wider than the vertebral bodies, without them. Closed, genus 0; touches both vertebrae without piercing
+// them.
+Mesh Disc(int number, double edge_length);
 
 }  // namespace phrenic::anatomy
 

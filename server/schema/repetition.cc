@@ -196,9 +196,18 @@ bool HasForEach(const FieldDescriptor& list) {
   return each != nullptr && each->message_type() == v1::ForEach::descriptor();
 }
 
+void GivePhysique(v1::Scene& scene) {
+  if (!scene.has_physique()) return;
+  for (v1::Body& body : *scene.mutable_bodies()) {
+    if (!body.has_generated() || body.generated().has_physique()) continue;
+    *body.mutable_generated()->mutable_physique() = scene.physique();
+  }
+}
+
 }  // namespace
 
 std::optional<Problem> Repeat(v1::Scene* scene) {
+  GivePhysique(*scene);
   std::size_t bytes_left = kMostBytes;
   for (int i = 0; i < v1::Scene::descriptor()->field_count(); ++i) {
     const FieldDescriptor& list = *v1::Scene::descriptor()->field(i);

@@ -9,9 +9,10 @@
 
 namespace phrenic::schema {
 
-// Replaces every element that has a `for_each` by its repetitions, in place: the scene is then the one that a person
-// would have written out. Returns a problem, with a path into the scene as it was, for an empty or too large set, for
-// an unknown placeholder, and for two bodies of one name. Requires: FindProblem finds nothing.
+// Gives the scene's physique to the generated bodies without one, and replaces every element that has a `for_each` by
+// its repetitions, in place: the scene is then the one that a person would have written out. Returns a problem, with a
+// path into the scene as it was, for an empty or too large set, for an unknown placeholder, and for two bodies of one
+// name. Requires: FindProblem finds nothing.
 std::optional<Problem> Repeat(v1::Scene* scene);
 
 }  // namespace phrenic::schema

@@ -68,7 +68,7 @@ MeshSource MakeMeshSource(std::string data_dir, std::vector<Uploads::Held> uploa
           cache = std::move(cache)](const v1::Body& body) -> absl::StatusOr<Mesh> {
     if (body.has_generated()) {
       return cache.Get(body.anatomy(), body.generated(), [&body] {
-        return anatomy::Generate(body.anatomy(), body.generated().resolution_mm(), body.generated().sheet());
+        return anatomy::Generate(body.anatomy(), body.generated());
       });
     }
     if (IsUpload(body.file().path())) return ReadUpload(uploads, body.file());

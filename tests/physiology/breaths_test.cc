@@ -28,9 +28,8 @@ std::string ReadSource(const std::string& path) {
 std::shared_ptr<const Model> CompileThorax() {
   const auto scene = schema::ParseScene("thorax-thesis.textproto", ReadSource("server/scenes/thorax-thesis.textproto"));
   EXPECT_TRUE(scene.ok()) << scene.status();
-  auto model = Compile(*scene, [](const v1::Body& body) {
-    return anatomy::Generate(body.anatomy(), body.generated().resolution_mm(), body.generated().sheet());
-  });
+  auto model =
+      Compile(*scene, [](const v1::Body& body) { return anatomy::Generate(body.anatomy(), body.generated()); });
   EXPECT_TRUE(model.ok()) << model.status();
   return *model;
 }

@@ -23,8 +23,9 @@ inline std::shared_ptr<const Model> CompileShipped(const std::string& name, doub
   std::stringstream text;
   text << file.rdbuf();
   return *Compile(*schema::ParseScene(name + ".textproto", text.str()), [=](const v1::Body& body) {
-    return anatomy::Generate(body.anatomy(), resolution_mm > 0 ? resolution_mm : body.generated().resolution_mm(),
-                             body.generated().sheet());
+    v1::Generated shape = body.generated();
+    if (resolution_mm > 0) shape.set_resolution_mm(resolution_mm);
+    return anatomy::Generate(body.anatomy(), shape);
   });
 }
 

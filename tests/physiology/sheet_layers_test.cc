@@ -23,9 +23,8 @@ std::shared_ptr<const Model> Layers(double middle_mm, double seen_mm = 3.16) {
                     part(middle_mm, " sheet: SHEET_MIDDLE") + "bodies { name: 'diaphragm' role: ROLE_SEEN" +
                     part(seen_mm, "") +
                     "motions { skin { bodies: 'diaphragm' drivers: 'middle' mode: SKIN_MODE_SHEET } }");
-  auto model = Compile(*scene, [](const v1::Body& body) {
-    return anatomy::Generate(body.anatomy(), body.generated().resolution_mm(), body.generated().sheet());
-  });
+  auto model =
+      Compile(*scene, [](const v1::Body& body) { return anatomy::Generate(body.anatomy(), body.generated()); });
   EXPECT_TRUE(model.ok()) << model.status();
   return model.ok() ? *model : nullptr;
 }

@@ -133,6 +133,21 @@ TEST(FreeCage, ASideWithoutMusclesStaysBehind) {
   EXPECT_LT(apart("right_cage_compliance: 0.2 "), -0.002);
 }
 
+// The cage comes to rest where their force ends.
+TEST(FreeCage, TheRibsExpiratoryMusclesEndAtResidualVolume) {
+  const auto lowest = [](double pressure) {
+    const auto model = CompileText(FreeCage(absl::StrCat(
+        "forces { chest_wall { wall: 'wall' expiratory_share: 0 expiratory_range: 0.2 expiratory_pressure: ", pressure,
+        " } } parameters { expiratory_activation: 5 intercostal_activation: 0 } ")));
+    return Named(*model, "pump handle").Value(RunTo(*model, 3, 2e-4).x);
+  };
+  EXPECT_EQ(lowest(0), 0);
+  EXPECT_LT(lowest(1000), -0.1);
+  EXPECT_GT(lowest(1000), -0.21);
+  EXPECT_LT(lowest(20000), lowest(1000));
+  EXPECT_GT(lowest(20000), -0.21);
+}
+
 TEST(FreeCage, SegmentsOfRibsThatTheSceneLacksAreRefused) {
   for (const char* bad : {"first_rib: 7 last_rib: 5", "first_rib: 5 last_rib: 13", "first_rib: 0 last_rib: 5"}) {
     const auto refused = TryCompileText(FreeCage(kChestWall, absl::StrCat("segments { ", bad, " } ")));
