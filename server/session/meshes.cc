@@ -67,9 +67,8 @@ MeshSource MakeMeshSource(std::string data_dir, std::vector<Uploads::Held> uploa
   return [data_dir = std::move(data_dir), uploads = std::move(uploads),
           cache = std::move(cache)](const v1::Body& body) -> absl::StatusOr<Mesh> {
     if (body.has_generated()) {
-      return cache.Get(body.anatomy(), body.generated(), [&body] {
-        return anatomy::Generate(body.anatomy(), body.generated());
-      });
+      return cache.Get(body.anatomy(), body.generated(),
+                       [&body] { return anatomy::Generate(body.anatomy(), body.generated()); });
     }
     if (IsUpload(body.file().path())) return ReadUpload(uploads, body.file());
     const absl::StatusOr<std::string> path = ResolveBelow(data_dir, body.file().path());
