@@ -1,6 +1,7 @@
 // To be included before <hwy/foreach_target.h>: disables targets with vectors of a size unknown to the compiler, whose
 // machines use NEON or the portable path, and SSSE3, since few machines have SSSE3 without SSE4. Builds with sanitizers
-// leave out SSE4 too: a machine that builds them runs AVX2 or AVX-512, and each target costs ten seconds of compilation.
+// leave out SSE4 too: a machine that builds them runs AVX2 or AVX-512, and each target costs ten seconds of
+// compilation.
 #ifndef PHRENIC_SERVER_MECHANICS_LINALG_VECTOR_TARGETS_H_
 #define PHRENIC_SERVER_MECHANICS_LINALG_VECTOR_TARGETS_H_
 
