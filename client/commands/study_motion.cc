@@ -108,9 +108,8 @@ CommandFunction SetUpStudyMotion(CLI::App& command) {
   command.add_option("--modes", options->fit.numbers, "numbers that a breath is made of")->capture_default_str();
   command.add_option("--split", options->fit.split, "seed of the random half that is fitted")->capture_default_str();
   command.add_option("--page", options->page, "write the table and a plot per person to this .html file");
-  command.add_option(
-      "--keep", options->keep,
-      "keep each finished person in this folder, and take up those that are in it after an interruption");
+  command.add_option("--keep", options->keep,
+                     "keep each finished person in this folder, and read finished ones from it");
   AddDataFolder(command, options->data_dir);
   return Bind(&MotionStudyCommand, options);
 }

@@ -39,7 +39,7 @@ absl::StatusOr<GivenError> ReadError(const std::string& text) {
   return absl::InvalidArgumentError(absl::StrCat("\"", text, "\" is not KIND=VALUE with a kind of ", kinds));
 }
 
-// Sets what stands behind the last "@": a phase, a time or a side. Returns the file's name.
+// Sets the suffix after the last "@": a phase, a time or a side. Returns the file's name.
 absl::StatusOr<std::string> ReadSuffix(const std::string& text, MeasuredFile& file) {
   const size_t at = text.rfind('@');
   if (at == std::string::npos) return text;

@@ -10,7 +10,7 @@
 
 namespace phrenic::client {
 
-// The options' values, with what stands behind "@".
+// The options' values, with the suffix after "@".
 struct MeasuredOptions {
   std::vector<std::string> landmarks;      // FILE or FILE@PHASE
   std::vector<std::string> exhale;         // FILE, at most one

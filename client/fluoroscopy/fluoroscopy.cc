@@ -44,7 +44,14 @@ absl::Status CheckFile(const std::string& file) {
       absl::StrCat("--out ", file, ": the formats are .png (grey), .nii and .nii.gz (line integrals)"));
 }
 
+constexpr double kLeastDistance = 0.8;  // [m]: the source is outside every patient
+
 absl::StatusOr<fluoroscopy::CArm> ReadArm(const FluoroscopyOptions& options) {
+  if (options.distance > 0 && options.distance < kLeastDistance) {
+    return absl::InvalidArgumentError(absl::StrCat("--distance ", options.distance,
+                                                   ": the source would be in the patient; give ", kLeastDistance,
+                                                   " m or more, or 0 for parallel rays"));
+  }
   absl::StatusOr<fluoroscopy::CArm> arm = fluoroscopy::NamedArm(options.view);
   if (!arm.ok()) return arm;
   if (options.lao) arm->lao = *options.lao;

@@ -67,14 +67,14 @@ JointJson KindsJson(const fit::JointFit& fit) {
 }
 
 Table QuantityTable(const std::vector<fit::FittedQuantity>& quantities) {
-  Table table({"number", "value", "unit", "standard error", "before", "its sd", "told by the data", "what"});
+  Table table({"number", "value", "unit", "standard error", "before", "its sd", "determined", "what"});
   for (const fit::FittedQuantity& each : quantities) {
     const double unit = each.number.per_unit;
     table.Add({each.number.name, Shown(each.value / unit), each.number.unit, Shown(each.standard_error / unit),
                Shown(each.number.mean / unit), Shown(each.number.sd / unit),
                each.at_bound     ? "AT ITS BOUND"
                : each.determined ? "yes"
-                                 : "HARDLY",
+                                 : "NO",
                each.number.what});
   }
   return table;

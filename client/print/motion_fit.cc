@@ -71,9 +71,9 @@ json RegionsJson(const std::vector<fit::RegionError>& regions) {
 }
 
 void PrintFittedNumbers(const fit::MotionFit& fit) {
-  Table table({"number", "mm", "standard error", "between people", "told by the data", "what"});
+  Table table({"number", "mm", "standard error", "between people", "determined", "what"});
   for (const fit::FittedNumber& each : fit.parameters) {
-    table.Add({each.name, Mm(each.value), Mm(each.standard_error), Mm(each.spread), each.determined ? "yes" : "HARDLY",
+    table.Add({each.name, Mm(each.value), Mm(each.standard_error), Mm(each.spread), each.determined ? "yes" : "NO",
                each.what});
   }
   table.Print(std::cout);

@@ -231,6 +231,8 @@ absl::StatusOr<Mesh> Generate(const v1::Anatomy& part, const v1::Generated& shap
   const PhysiqueMap map(shape.physique());
   if (map.IsIdentity()) return Generate(part, shape.resolution_mm(), shape.sheet());
   if (part.structure() == v1::STRUCTURE_INNER_CAGE) {
+    if (absl::Status status = CheckPart(part); !status.ok()) return status;
+    if (absl::Status status = CheckSheet(part, shape.sheet()); !status.ok()) return status;
     if (absl::Status status = CheckResolution(part, shape.resolution_mm()); !status.ok()) return status;
     Mesh cage = InnerCage(ResolutionOf(part, shape.resolution_mm(), shape.sheet()), map);
     cage.vertices *= kMillimetre;

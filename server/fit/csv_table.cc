@@ -7,6 +7,11 @@
 #include "server/fit/csv_cells.h"
 
 namespace phrenic::fit {
+namespace {
+
+constexpr size_t kMostColumns = 8000;  // three of each of 2,000 markers, and others
+
+}  // namespace
 
 absl::Status CsvTable::ReadHeader() {
   while (reader_.NextFilledLine()) {
@@ -14,7 +19,11 @@ absl::Status CsvTable::ReadHeader() {
       absl::StrAppend(&comments_, absl::AsciiStrToLower(std::string(reader_.Rest())), "\n");
       continue;
     }
-    for (const std::string_view cell : CellsOf(reader_.Rest())) {
+    const auto cells = CellsOf(reader_.Rest());
+    if (cells.size() > kMostColumns) {
+      return reader_.Error(absl::StrCat("the header has ", cells.size(), " columns, more than ", kMostColumns));
+    }
+    for (const std::string_view cell : cells) {
       names_.push_back(absl::AsciiStrToLower(std::string(cell)));
     }
     return absl::OkStatus();
@@ -47,11 +56,12 @@ std::string_view CsvTable::Text(int column) const {
 absl::Status CsvTable::Read(int column, double& number) const {
   const auto at = static_cast<size_t>(column);
   if (at >= cells_.size()) {
-    return Error(absl::StrCat("column ", column + 1, " (", names_[at], ") is missing: this line has ", cells_.size()));
+    return Error(absl::StrCat("column ", column + 1, ", ", meshio::Quoted(names_[at]), ", is missing: this line has ",
+                              cells_.size()));
   }
   if (meshio::ParseNumber(cells_[at], number)) return absl::OkStatus();
-  return Error(absl::StrCat(meshio::Quoted(cells_[at]), " in column ", column + 1, " (", names_[at],
-                            ") is not a finite number"));
+  return Error(absl::StrCat(meshio::Quoted(cells_[at]), " in column ", column + 1, ", ", meshio::Quoted(names_[at]),
+                            ", is not a finite number"));
 }
 
 }  // namespace phrenic::fit

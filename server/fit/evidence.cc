@@ -57,6 +57,9 @@ absl::Status AddPairs(const MeasuredFile& file, Landmarks pairs, Evidence& evide
   if (pairs.phase.size() > 0 && file.phase) return Refusal(file, "has a column phase: leave the phase of the file out");
   if (pairs.phase.size() == 0) pairs.phase = Eigen::VectorXd::Constant(pairs.size(), file.phase.value_or(1));
   KindOfData kind = KindFor(file, false);
+  if (evidence.landmarks.size() > 0 && kind.sd != evidence.landmarks_kind.sd) {
+    return Refusal(file, "its error differs from that of other landmarks: give all landmarks one error");
+  }
   if (evidence.landmarks.size() > 0) kind.source = absl::StrCat(evidence.landmarks_kind.source, ", ", kind.source);
   evidence.landmarks_kind = kind;
   AppendPairs(pairs, evidence.landmarks);
@@ -131,6 +134,9 @@ absl::Status AddSurfaceFiles(const std::vector<MeasuredFile>& files, Measured me
   BreathSurfaces surfaces = {measured == Measured::kLungs ? SurfaceOf::kLungs : SurfaceOf::kDiaphragm,
                              *std::move(moved), std::nullopt};
   if (exhale != nullptr) {
+    if (exhale->error && exhale->error != inhale->error) {
+      return Refusal(*exhale, "its error differs from that of the surface at inhale: give it there");
+    }
     absl::StatusOr<Mesh> rest = ParseBreathSurface(exhale->name, exhale->bytes);
     if (!rest.ok()) return rest.status();
     surfaces.exhale = *std::move(rest);

@@ -1,4 +1,4 @@
-// What there is of a person: files of several kinds, each with its error.
+// Measured data of a person: files of several kinds, each with its error.
 #ifndef PHRENIC_SERVER_FIT_EVIDENCE_H_
 #define PHRENIC_SERVER_FIT_EVIDENCE_H_
 

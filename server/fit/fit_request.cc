@@ -123,6 +123,9 @@ absl::StatusOr<Evidence> ReadEvidence(const v1::FitMotionRequest& request) {
       return absl::InvalidArgumentError(
           absl::StrCat("measured[", i, "].name: give at most ", kLongestFileName, " characters of ASCII"));
     }
+    if (sent.side() != v1::SIDE_UNSPECIFIED && *kind != Measured::kMMode) {
+      return absl::InvalidArgumentError(absl::StrCat("measured[", i, "].side: only an M-mode has a side"));
+    }
     bytes += sent.content().size();
     MeasuredFile& file = files.emplace_back();
     file.measured = *kind;

@@ -205,7 +205,7 @@ v1::Scene JointScene(const std::string& name, const std::string& source, const S
     parameters.set_inspiratory_share(Rounded(fit.inspiratory_share, 3));
     parameters.set_pause_share(Rounded(fit.pause_share, 3));
   }
-  if (landmarks) AddLandmarks(fit.motion, kMostLandmarks, scene);
+  if (landmarks && !fit.motion.halves.held_out.empty()) AddLandmarks(fit.motion, kMostLandmarks, scene);
   return scene;
 }
 

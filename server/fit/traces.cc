@@ -172,9 +172,10 @@ Troughs FindTroughs(const RawTrace& raw, const std::vector<double>& crossings) {
   return troughs;
 }
 
-// Sets phase and value of the samples in whole breaths, at most kMostUsed of them, evenly chosen.
-void AddSamples(const RawTrace& raw, const std::vector<double>& crossings, const Troughs& troughs, double si,
-                TracedBreaths& breaths) {
+// Sets phase and value of the samples in whole breaths, at most kMostUsed of them, evenly chosen. Returns how many
+// there are.
+Eigen::Index AddSamples(const RawTrace& raw, const std::vector<double>& crossings, const Troughs& troughs, double si,
+                        TracedBreaths& breaths) {
   std::vector<double> phase, value;
   size_t k = 0;
   for (size_t i = 0; i < raw.time.size(); ++i) {
@@ -191,6 +192,7 @@ void AddSamples(const RawTrace& raw, const std::vector<double>& crossings, const
     breaths.phase[i] = phase[static_cast<size_t>(i * count / used)];
     breaths.value[i] = value[static_cast<size_t>(i * count / used)];
   }
+  return count;
 }
 
 absl::Status CheckBreaths(Traced traced, std::string_view name, TracedBreaths& breaths) {
@@ -238,12 +240,12 @@ absl::StatusOr<TracedBreaths> ParseTrace(Traced traced, std::string_view name, s
     breaths.lengths[k] = crossings[static_cast<size_t>(k) + 1] - crossings[static_cast<size_t>(k)];
     if (!(breaths.lengths[k] > 0)) return none;
   }
-  AddSamples(*raw, crossings, troughs, UnitOfTrace(traced).si, breaths);
-  if (breaths.phase.size() < 8 * breaths.lengths.size()) {
+  const Eigen::Index samples = AddSamples(*raw, crossings, troughs, UnitOfTrace(traced).si, breaths);
+  if (samples < 8 * breaths.lengths.size()) {
     return absl::InvalidArgumentError(
         absl::StrFormat("%s: %d samples of %d breaths do not show their shape: record 8 "
                         "samples a breath at least",
-                        std::string(name), breaths.phase.size(), breaths.lengths.size()));
+                        std::string(name), samples, breaths.lengths.size()));
   }
   if (absl::Status status = CheckBreaths(traced, name, breaths); !status.ok()) return status;
   return breaths;

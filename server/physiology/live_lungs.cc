@@ -2,16 +2,33 @@
 
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "server/physiology/lung_breath.h"
 #include "server/physiology/parts.h"
 
 namespace phrenic::physiology {
+namespace {
+
+constexpr size_t kMostLungs = 8;                 // lobes
+constexpr Eigen::Index kMostTriangles = 100000;  // of all lungs: 300 MB while they are reduced
+
+absl::Status CheckSize(const Model& model, const std::vector<int>& lungs) {
+  Eigen::Index triangles = 0;
+  for (const int body : lungs) triangles += model.bodies[static_cast<size_t>(body)].mesh.triangles.cols();
+  if (lungs.size() <= kMostLungs && triangles <= kMostTriangles) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrCat("the scene has ", lungs.size(), " lungs with ", triangles,
+                                                    " triangles, and lung tissue at most ", kMostLungs, " with ",
+                                                    kMostTriangles, " in all: make their surfaces coarser"));
+}
+
+}  // namespace
 
 absl::Status LiveLungs::Add(int body, const StopCheck& stop) {
   const BodyModel& lung = model_.bodies[static_cast<size_t>(body)];
   const absl::StatusOr<LungTissue> tissue = LungTissue::Make(lung.mesh, {}, stop);
   if (!tissue.ok()) return tissue.status();
   LungSurroundings surroundings(model_, sheet_, wall_, *tissue);
+  if (stop.Stopped()) return stop.status();
   absl::StatusOr<LungResponses> responses = LungResponses::Make(*tissue, surroundings.neighbours(), stop);
   if (!responses.ok()) return responses.status();
   const RegionWeights weights = WeightsOfRegions(tissue->grid(), tissue->box());
@@ -29,6 +46,7 @@ absl::StatusOr<LiveLungs> LiveLungs::Make(const Model& model, const StopCheck& s
     return absl::FailedPreconditionError(
         "the scene lacks lungs, a simulated diaphragm or an inner wall of the cage, so that nothing moves lung tissue");
   }
+  if (absl::Status status = CheckSize(model, parts->lungs); !status.ok()) return status;
   LiveLungs lungs(model, parts->muscle, parts->wall);
   for (const int body : parts->lungs) {
     if (absl::Status added = lungs.Add(body, stop); !added.ok()) return added;

@@ -1,5 +1,5 @@
 // The interior of the lungs at any moment of a run, relative to rest: what viewers and probes read while a session
-// runs. No step computes it; a scene that nobody reads it of has no part of it in memory.
+// runs. No step computes it; it uses no memory until it is first read.
 #ifndef PHRENIC_SERVER_PHYSIOLOGY_LIVE_LUNGS_H_
 #define PHRENIC_SERVER_PHYSIOLOGY_LIVE_LUNGS_H_
 

@@ -270,6 +270,7 @@ absl::Status Server::Parts::Restore(const ServerOptions& options) {
 
 void Server::Parts::Maintain() {
   table.Tend();
+  tissue_service.DropUnused();
   const absl::Status refreshed = accounts->Refresh();
   if (!refreshed.ok() && refreshed != refresh_error) {
     spdlog::warn("{}; the previous accounts stay in use", std::string(refreshed.message()));

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/time/time.h"
 #include "server/service/calls/session_call.h"
 #include "server/service/calls/status.h"
 
@@ -18,6 +19,7 @@ using physiology::LiveLungs;
 using physiology::LungMoment;
 
 constexpr int kMostPoints = 64;
+constexpr absl::Duration kCancelInterval = absl::Milliseconds(100);                  // of a call that waits
 constexpr const char* kRegionNames[] = {"base", "middle", "apex", "back", "front"};  // by LungRegion
 static_assert(std::size(kRegionNames) == physiology::kLungRegions);
 
@@ -78,12 +80,17 @@ TissueService::TissueService(session::Table& table, AccessGuard& guard, const se
 
 void TissueService::AddTo(CallTable& calls) {
   calls.Add(Lane::kWork, *this, &TissueService::GetTissue);
-  calls.Add(Lane::kSession, *this, &TissueService::ReadTissue);
+  calls.Add(Lane::kWork, *this, &TissueService::ReadTissue);
+}
+
+void TissueService::DropUnused() {
+  const absl::MutexLock lock(&mutex_);
+  std::erase_if(made_, [](const auto& entry) { return entry.second->model.expired(); });
 }
 
 std::shared_ptr<TissueService::Made> TissueService::EntryOf(const std::shared_ptr<const Model>& model) {
+  DropUnused();  // of a model that was at the same address too
   const absl::MutexLock lock(&mutex_);
-  std::erase_if(made_, [](const auto& entry) { return entry.second->model.expired(); });
   std::shared_ptr<Made>& made = made_[model.get()];
   if (made == nullptr) {
     made = std::make_shared<Made>();
@@ -92,16 +99,24 @@ std::shared_ptr<TissueService::Made> TissueService::EntryOf(const std::shared_pt
   return made;
 }
 
-absl::StatusOr<std::shared_ptr<const LiveLungs>> TissueService::LungsOf(const std::shared_ptr<const Model>& model,
-                                                                        grpc::CallbackServerContext& context) {
+TissueService::Lungs TissueService::LungsOf(const std::shared_ptr<const Model>& model,
+                                            grpc::CallbackServerContext& context) {
   const std::shared_ptr<Made> made = EntryOf(model);
-  const absl::MutexLock lock(&made->mutex);
-  if (made->lungs != nullptr) return made->lungs;
+  absl::MutexLock lock(&made->mutex);
+  const auto free = [&making = made->making] { return !making; };
+  while (!made->mutex.AwaitWithTimeout(absl::Condition(&free), kCancelInterval)) {
+    if (context.IsCancelled()) return absl::CancelledError("the caller has disconnected");
+  }
+  if (made->lungs) return *made->lungs;
+  made->making = true;
+  made->mutex.Unlock();
   const StopCheck stop([&context] { return context.IsCancelled(); }, longest_, "--max-compile-seconds");
   absl::StatusOr<LiveLungs> lungs = LiveLungs::Make(*model, stop);
-  if (!lungs.ok()) return lungs.status();
-  made->lungs = std::make_shared<const LiveLungs>(*std::move(lungs));
-  return made->lungs;
+  made->mutex.Lock();
+  made->making = false;
+  if (absl::IsCancelled(lungs.status())) return lungs.status();
+  if (lungs.ok()) return made->lungs.emplace(std::make_shared<const LiveLungs>(*std::move(lungs)));
+  return made->lungs.emplace(lungs.status());
 }
 
 grpc::Status TissueService::GetTissue(grpc::CallbackServerContext* context, const v1::GetTissueRequest* request,

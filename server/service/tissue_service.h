@@ -4,8 +4,10 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "absl/base/thread_annotations.h"
+#include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
 #include "phrenic/v1/tissue.pb.h"
 #include "server/physiology/live_lungs.h"
@@ -17,7 +19,8 @@
 namespace phrenic::service {
 
 // Thread-safe: the methods run on threads of their lanes. The lungs of a model are made by the first call that needs
-// them, kept while a session has the model, and shared by all sessions of it. Errors as in the proto of each method.
+// them, kept until neither a session nor the cache of models has the model, and shared by its sessions. Errors as in
+// the proto of each method.
 class TissueService final {
  public:
   // Table and guard outlive the service. limits.compile_seconds bounds the making of lungs too.
@@ -26,26 +29,31 @@ class TissueService final {
   // Adds the methods to the table. The service outlives it.
   void AddTo(CallTable& calls);
 
+  // Drops the lungs of models that exist no longer. The server calls it every few seconds.
+  void DropUnused() ABSL_LOCKS_EXCLUDED(mutex_);
+
   // On Lane::kWork: the first call for a model computes for a second or two.
   grpc::Status GetTissue(grpc::CallbackServerContext* context, const v1::GetTissueRequest* request,
                          ReplyStream<v1::GetTissueResponse>* writer);
-  // On Lane::kSession. Reads the state that viewers see, and computes on the lane's thread.
+  // On Lane::kWork too, since it makes the lungs if no call has. Reads the state that viewers see.
   grpc::Status ReadTissue(grpc::CallbackServerContext* context, const v1::ReadTissueRequest* request,
                           v1::ReadTissueResponse* response);
 
  private:
-  // The lungs of one model; `mutex` is held while they are made, so that two callers do not both make them.
+  using Lungs = absl::StatusOr<std::shared_ptr<const physiology::LiveLungs>>;
+  // The lungs of one model. One call makes them, and the others wait for it.
   struct Made {
     std::weak_ptr<const Model> model;
     absl::Mutex mutex;
-    std::shared_ptr<const physiology::LiveLungs> lungs ABSL_GUARDED_BY(mutex);  // null before
+    bool making ABSL_GUARDED_BY(mutex) = false;
+    // Unset before, and after a call that was cancelled. An error stays, so that it is computed once.
+    std::optional<Lungs> lungs ABSL_GUARDED_BY(mutex);
   };
 
   // Returns the entry of a model. Drops those whose model no session has.
   std::shared_ptr<Made> EntryOf(const std::shared_ptr<const Model>& model) ABSL_LOCKS_EXCLUDED(mutex_);
   // The errors of LiveLungs::Make, CANCELLED when the client disconnects.
-  absl::StatusOr<std::shared_ptr<const physiology::LiveLungs>> LungsOf(const std::shared_ptr<const Model>& model,
-                                                                       grpc::CallbackServerContext& context);
+  Lungs LungsOf(const std::shared_ptr<const Model>& model, grpc::CallbackServerContext& context);
 
   session::Table& table_;
   AccessGuard& guard_;

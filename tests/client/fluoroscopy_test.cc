@@ -40,6 +40,7 @@ TEST(Fluoroscopy, OfADeepBreathHasLighterLungs) {
 TEST(Fluoroscopy, ThatCannotBeIsAnErrorWithTheRemedy) {
   EXPECT_THAT(XRay({"--out", Scratch("chest.bmp")}).err, HasSubstr(".png"));
   EXPECT_THAT(XRay({"--out", Scratch("chest.png"), "--view", "oblique"}).err, HasSubstr("left-lateral"));
+  EXPECT_THAT(XRay({"--out", Scratch("chest.png"), "--distance", "0.3"}).err, HasSubstr("give 0.8 m or more"));
   EXPECT_THAT(XRay({"--out", Scratch("chest.png"), "--preset", "none"}).err, HasSubstr("palsy-right"));
   const Outcome empty = Phrenic({"fluoroscopy", "cube-springs", "--out", Scratch("cube.png")});
   EXPECT_NE(empty.code, 0);

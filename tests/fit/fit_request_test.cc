@@ -198,8 +198,16 @@ TEST(FitRequest, OfSeveralKindsIsRefusedByFileOrByField) {
   request.set_assimilate(false);
   request.mutable_measured(0)->set_content("time_s,volume_l\n1,x\n");
   EXPECT_THAT(RefusalOf(request), HasSubstr("spiro.csv:2: \"x\" in column 2"));
+  request.mutable_measured(0)->set_side(v1::SIDE_LEFT);
+  EXPECT_THAT(RefusalOf(request), HasSubstr("measured[0].side: only an M-mode has a side"));
+  request.mutable_measured(0)->clear_side();
   request.mutable_measured(0)->set_kind(v1::MEASURED_KIND_UNSPECIFIED);
   EXPECT_THAT(RefusalOf(request), HasSubstr("measured[0].kind: is unknown"));
+  request.clear_measured();
+  for (const double error : {1.0, 2.0}) {
+    AddMeasured(v1::MEASURED_KIND_LANDMARKS, PersonTruth::One().Landmarks(0.001), request).set_error(error);
+  }
+  EXPECT_THAT(RefusalOf(request), HasSubstr("its error differs from that of other landmarks"));
   request.clear_measured();
   EXPECT_THAT(RefusalOf(request), HasSubstr("landmarks: is required, or measured"));
 }

@@ -80,12 +80,25 @@ TEST(Traces, AreRefusedWithTheLineAndTheRemedy) {
   EXPECT_THAT(TraceFault(""), HasSubstr("its first one names the columns"));
   EXPECT_THAT(TraceFault("t,v\n1,2\n"), HasSubstr("a.csv:1: the first line must name the columns time_s and volume_l"));
   EXPECT_THAT(TraceFault("time_s,volume_l\n1,2\n1,3\n"), HasSubstr("a.csv:3: the times must ascend"));
-  EXPECT_THAT(TraceFault("time_s,volume_l\n1,x\n"), HasSubstr("a.csv:2: \"x\" in column 2 (volume_l) is not a finite"));
-  EXPECT_THAT(TraceFault("time_s,volume_l\n1\n"), HasSubstr("a.csv:2: column 2 (volume_l) is missing"));
+  EXPECT_THAT(TraceFault("time_s,volume_l\n1,x\n"),
+              HasSubstr("a.csv:2: \"x\" in column 2, \"volume_l\", is not a finite"));
+  EXPECT_THAT(TraceFault("time_s,volume_l\n1\n"), HasSubstr("a.csv:2: column 2, \"volume_l\", is missing"));
   EXPECT_THAT(TraceFault("time_s,volume_l\n1,2\n"), HasSubstr("no whole breath"));
   std::string rising = "time_s,volume_l\n";
   for (int i = 0; i < 100; ++i) absl::StrAppend(&rising, i, ",", 0.1 * i, "\n");
   EXPECT_THAT(TraceFault(rising), HasSubstr("no whole breath"));
+}
+
+// Forty minutes at 8 Hz: more samples than a fit uses, and 32 a breath.
+TEST(Traces, OfManyBreathsAreThinnedAfterTheyAreCounted) {
+  std::string text = "time_s,volume_l\n";
+  for (int i = 0; i < 20000; ++i) {
+    absl::StrAppendFormat(&text, "%.3f,%.5f\n", i / 8.0, 0.25 * (1 - std::cos(std::numbers::pi * i / 16)));
+  }
+  const auto breaths = ParseTrace(Traced::kVolume, "a.csv", text);
+  ASSERT_TRUE(breaths.ok()) << breaths.status();
+  EXPECT_GT(breaths->lengths.size(), 600);
+  EXPECT_LE(breaths->phase.size(), 4000);
 }
 
 std::string MarkerFault(const std::string& text) { return std::string(ParseMarkers("m.csv", text).status().message()); }
@@ -114,10 +127,13 @@ TEST(MarkerFiles, OfPairsAndOfTracksAreTheSameMotion) {
 }
 
 TEST(MarkerFiles, AreRefusedWithTheLineAndTheRemedy) {
+  std::string wide;
+  for (int i = 0; i < 100'000; ++i) absl::StrAppend(&wide, "a_x,");
+  EXPECT_THAT(MarkerFault(wide + "a_x\n1\n"), HasSubstr("m.csv:1: the header has 100001 columns, more than 8000"));
   EXPECT_THAT(MarkerFault("a,b\n1,2\n"), HasSubstr("m.csv:1: the first line must name the columns name,rest_x"));
   EXPECT_THAT(MarkerFault("rest_x,rest_y,rest_z\n1,2,3\n"), HasSubstr("moved_x, moved_y, moved_z are missing"));
   EXPECT_THAT(MarkerFault(absl::StrCat(kMarkerHeader, "a,1,2,3,4,5\n")),
-              HasSubstr("m.csv:2: column 7 (moved_z) is missing"));
+              HasSubstr("m.csv:2: column 7, \"moved_z\", is missing"));
   EXPECT_THAT(MarkerFault(absl::StrCat(kMarkerHeader, "a,1,2,3,4,5,6\n")), HasSubstr("3 markers at least"));
   const auto chest = [](double scale, double moved) {
     return absl::StrFormat("%sa,0,%g,0,0,%g,0\nb,%g,0,0,%g,0,0\nc,%g,0,0,%g,0,0\n", kMarkerHeader, -100 * scale,

@@ -34,7 +34,7 @@ struct Surface {
 };
 
 // True if a boundary point above the top of the wall is in the cupola of the pleura, which hangs from it.
-bool IsInCupola(const Eigen::Vector3d& point, const Mesh& wall) { return point.z() > wall.vertices.row(2).maxCoeff(); }
+bool IsInCupola(const Eigen::Vector3d& point, double top_of_wall) { return point.z() > top_of_wall; }
 
 }  // namespace
 
@@ -45,11 +45,11 @@ LungSurroundings::LungSurroundings(const Model& model, int sheet, int wall, cons
 
 void LungSurroundings::Bind(const LungTissue& tissue, const Mesh& sheet, const Mesh& wall) {
   const std::array<Surface, 2> surfaces = {Surface(sheet), Surface(wall)};
-  const double side = tissue.box().center().x() > 0 ? 1 : -1;
+  const double side = tissue.box().center().x() > 0 ? 1 : -1, top_of_wall = wall.vertices.row(2).maxCoeff();
   for (Eigen::Index p = 0; p < tissue.points().cols(); ++p) {
     const Eigen::Vector3d point = tissue.points().col(p), normal = tissue.normals().col(p);
     std::array<SurfacePoint, 2> near = {surfaces[0].Facing(point, normal), surfaces[1].Facing(point, normal)};
-    if (IsInCupola(point, wall)) near[1] = surfaces[1].tree.Nearest(wall.vertices, surfaces[1].boxes, point, 1);
+    if (IsInCupola(point, top_of_wall)) near[1] = surfaces[1].tree.Nearest(wall.vertices, surfaces[1].boxes, point, 1);
     const size_t nearest = near[0].squared <= near[1].squared ? 0 : 1;
     if (near[nearest].triangle >= 0) {
       contacts_[nearest].push_back({p, surfaces[nearest].tree.triangle(near[nearest].triangle), near[nearest].weights});

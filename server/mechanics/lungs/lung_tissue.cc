@@ -166,7 +166,10 @@ Points LungTissue::SolveVectors(const ConstPoints& displacement) const {
 absl::StatusOr<Eigen::MatrixXd> LungTissue::SolveEach(const Eigen::MatrixXd& g, const std::vector<bool>& free,
                                                       const StopCheck& stop) const {
   Eigen::MatrixXd forces(3 * grid_.nodes().cols(), g.cols());
-  for (Eigen::Index c = 0; c < g.cols(); ++c) forces.col(c) = Forces(normals_ * g.col(c).asDiagonal());
+  for (Eigen::Index c = 0; c < g.cols(); ++c) {
+    if (stop.Stopped()) return stop.status();
+    forces.col(c) = Forces(normals_ * g.col(c).asDiagonal());
+  }
   if (std::find(free.begin(), free.end(), true) == free.end()) return factors_->Solve(forces);
   const std::optional<LayeredCholesky> factors = Factorise(free, stop);
   if (stop.Stopped()) return stop.status();

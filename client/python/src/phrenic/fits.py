@@ -1,4 +1,4 @@
-"""A person's lungs and breath from what there is of it, fitted on the server with the numbers of `phrenic fit`.
+"""A person's lungs and breath from measured data, fitted on the server with the numbers of `phrenic fit`.
 
     found = phrenic.fit("pairs.csv", modes=12)
     found = phrenic.fit(exhale="points.csv", surfaces=["dome.stl@inhale"], volume="spirogram.csv")
@@ -204,7 +204,7 @@ def _listed(paths: Any) -> list[Any]:
 
 
 def _suffix(text: str) -> tuple[str, str]:
-    """Returns a file and what stands behind its "@"."""
+    """Returns a file and the suffix after its "@"."""
     path, at, suffix = text.rpartition("@")
     if at and (suffix in ("inhale", "exhale", "right", "left") or suffix.replace(".", "", 1).isdigit()):
         return path, suffix
