@@ -16,7 +16,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kAdultHeight = 1.75;                       // [m]
-constexpr double kBottom = 100, kTop = 396;                 // of the thoracic spine [mm]
+constexpr double kSpineBottom = 100, kSpineTop = 396;       // of the thoracic spine [mm]
 constexpr double kReach = 60;                               // L [mm]
 constexpr double kFront = -98, kBack = 40, kFollows = 0.3;  // of w: y of the breastbone and of the spine [mm]
 constexpr double kRibSlope = 31;                            // of the adult's first ribs [degrees]
@@ -35,8 +35,8 @@ struct Bow {
 };
 
 Bow BowAt(double z) {
-  const double t = std::clamp((z - kBottom) / (kTop - kBottom), 0.0, 1.0), sine = std::sin(pi * t);
-  return {(kTop - kBottom) / pi * sine * sine, std::sin(2 * pi * t)};
+  const double t = std::clamp((z - kSpineBottom) / (kSpineTop - kSpineBottom), 0.0, 1.0), sine = std::sin(pi * t);
+  return {(kSpineTop - kSpineBottom) / pi * sine * sine, std::sin(2 * pi * t)};
 }
 
 // 0 at the domes' rim and at the lungs' apices, 1 at the domes.
@@ -85,7 +85,7 @@ void PhysiqueMap::BendAside(Eigen::Vector3d& x) const {
   if (scoliosis_ == 0) return;
   const double z = x.z();
   const Bow bow = BowAt(z);
-  const double turn = twist_ * bow.value * pi / (kTop - kBottom), follows = Following(x.y()), aside = x.x();
+  const double turn = twist_ * bow.value * pi / (kSpineTop - kSpineBottom), follows = Following(x.y()), aside = x.x();
   x.y() -= turn * x.x();
   x.x() += turn * Saturated(x.y() - SpineFront(z));
   x.x() -= scoliosis_ * bow.value * follows;
