@@ -11,32 +11,32 @@ namespace {
 
 using phrenic::fit::Evidence;
 
-void Require(bool condition) {
+void MustHold(bool condition) {
   if (!condition) std::abort();
 }
 
 void CheckLandmarks(const phrenic::fit::Landmarks& landmarks) {
-  Require(landmarks.motion.cols() == landmarks.size() && landmarks.phase.size() == landmarks.size());
-  Require(landmarks.exhale.allFinite() && landmarks.motion.allFinite() && landmarks.phase.allFinite());
+  MustHold(landmarks.motion.cols() == landmarks.size() && landmarks.phase.size() == landmarks.size());
+  MustHold(landmarks.exhale.allFinite() && landmarks.motion.allFinite() && landmarks.phase.allFinite());
 }
 
 void CheckTrace(const phrenic::fit::TracedBreaths& breaths) {
-  Require(breaths.phase.size() > 0 && breaths.phase.size() == breaths.value.size());
-  Require(breaths.value.allFinite() && breaths.lengths.minCoeff() > 0);
-  Require(breaths.phase.minCoeff() >= 0 && breaths.phase.maxCoeff() <= 1);
+  MustHold(breaths.phase.size() > 0 && breaths.phase.size() == breaths.value.size());
+  MustHold(breaths.value.allFinite() && breaths.lengths.minCoeff() > 0);
+  MustHold(breaths.phase.minCoeff() >= 0 && breaths.phase.maxCoeff() <= 1);
 }
 
 void CheckMarkers(const phrenic::fit::Markers& markers) {
   const auto count = static_cast<std::size_t>(markers.rest.cols());
-  Require(count >= 3 && markers.names.size() == count && markers.motion.cols() == markers.rest.cols());
-  Require(markers.rest.allFinite() && markers.motion.allFinite());
+  MustHold(count >= 3 && markers.names.size() == count && markers.motion.cols() == markers.rest.cols());
+  MustHold(markers.rest.allFinite() && markers.motion.allFinite());
 }
 
 void CheckEvidence(const Evidence& evidence) {
   CheckLandmarks(evidence.landmarks);
-  Require(evidence.exhale.allFinite());
+  MustHold(evidence.exhale.allFinite());
   for (const Evidence::SurfaceFile& file : evidence.surfaces) {
-    Require(file.kind.sd > 0 && file.surfaces.inhale.vertices.allFinite());
+    MustHold(file.kind.sd > 0 && file.surfaces.inhale.vertices.allFinite());
   }
   for (const Evidence::TraceFile& file : evidence.traces) CheckTrace(file.breaths);
   for (const Evidence::MarkerFile& file : evidence.markers) CheckMarkers(file.markers);
@@ -51,7 +51,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string bytes(reinterpret_cast<const char*>(data) + 2, size - 2);
   if (kind == kKept) {
     const auto fit = phrenic::fit::ReadKeptFit(bytes);
-    Require(!fit || phrenic::fit::KeepFit(*fit).size() == bytes.size());
+    MustHold(!fit || phrenic::fit::KeepFit(*fit).size() == bytes.size());
     return 0;
   }
   constexpr const char* kNames[] = {"a.csv", "a.csv", "a.stl", "a.obj", "a.csv", "a.csv", "a.csv"};
