@@ -25,6 +25,7 @@ struct KindRow {
 constexpr KindRow kKindRows[] = {
     {"--output", Kind::kChoice, "FORMAT", "table json jsonl csv"},
     {"--field", Kind::kOther, "PATH", ""},
+    {"watch --at", Kind::kOther, "X,Y,Z", ""},
     {"--grid", Kind::kFile, "FILE", ""},
     {"--server", Kind::kOther, "HOST:PORT", ""},
     {"--viewer", Kind::kOther, "URL", ""},
