@@ -70,6 +70,7 @@ class FitReader {
     if (!good_) return;
     matrix.resize(rows, cols);
     const std::size_t size = sizeof(double) * static_cast<std::size_t>(matrix.size());
+    if (size == 0) return;
     std::memcpy(matrix.data(), left_.data(), size);
     left_.remove_prefix(size);
   }
