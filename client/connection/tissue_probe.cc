@@ -70,7 +70,7 @@ grpc::Status TissueProbe::AddTo(v1::Frame& frame) {
   grpc::ClientContext call;  // not that which Ctrl-C cancels: the stream is
   call.set_deadline(std::chrono::system_clock::now() + kPatience);
   NameSession(request_, call);
-  const grpc::Status read = stub_->ReadTissue(&call, request_, &response);
+  grpc::Status read = stub_->ReadTissue(&call, request_, &response);
   if (!read.ok()) return read;
   for (const v1::LungReading& lung : response.lungs()) AddLung(lung, frame);
   for (int i = 0; i < response.points_size(); ++i) {

@@ -37,6 +37,7 @@ std::vector<Extents> Filled(const std::vector<std::optional<Extents>>& rings) {
   const auto first = std::find_if(rings.begin(), rings.end(), known);
   if (first == rings.end()) return {};
   std::vector<Extents> filled;
+  filled.reserve(rings.size());
   Extents last = **first;
   for (const auto& ring : rings) filled.push_back(last = ring.value_or(last));
   return filled;

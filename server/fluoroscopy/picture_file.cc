@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -55,11 +56,12 @@ Window WindowOf(const Picture& sums) {
 
 std::string WritePng(const Picture& sums, const Window& window, bool dark_bones) {
   std::string rows;
+  rows.reserve(static_cast<size_t>((2 * sums.cols() + 1) * sums.rows()));
   for (const auto& row : sums.rowwise()) {
     rows.push_back(0);  // no filter
     for (const double sum : row) {
       const double grey = std::clamp((sum - window.low) / (window.high - window.low), 0.0, 1.0);
-      const auto level = static_cast<std::uint16_t>(65535 * (dark_bones ? 1 - grey : grey) + 0.5);
+      const auto level = static_cast<std::uint16_t>(std::lround(65535 * (dark_bones ? 1 - grey : grey)));
       rows.push_back(static_cast<char>(level >> 8));
       rows.push_back(static_cast<char>(level));
     }

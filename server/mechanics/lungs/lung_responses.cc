@@ -105,6 +105,7 @@ absl::StatusOr<LungResponses> LungResponses::Make(const LungTissue& tissue,
                                                   const std::vector<LungNeighbour>& neighbours, const StopCheck& stop) {
   LungResponses lung(tissue, neighbours);
   std::vector<bool> free;
+  free.reserve(neighbours.size());
   for (const LungNeighbour neighbour : neighbours) free.push_back(neighbour == LungNeighbour::kNone);
   const Eigen::MatrixXd g = NormalParts(tissue, neighbours);
   const absl::StatusOr<Eigen::MatrixXd> responses = tissue.SolveEach(g, free, stop);
