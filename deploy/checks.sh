@@ -284,12 +284,15 @@ stage_quick_build() {
   check check_build phrenicd architecture_test contract_test exact_test golden_test mechanics_test
 }
 
+# Tests that run beside each other.
+at_a_time=$(nproc)
+
 # ctests FOLDER [OPTION...] runs the tests built there and counts them; a run that breaks counts as one failed.
 ctests() {
   local folder=$1 log status=0 bad all
   shift
   log=$results/$(basename "$folder").log
-  ctest --test-dir "$folder" -j "$(nproc)" --no-tests=error --output-on-failure --progress "$@" >"$log" 2>&1 || status=$?
+  ctest --test-dir "$folder" -j "$at_a_time" --no-tests=error --output-on-failure --progress "$@" >"$log" 2>&1 || status=$?
   tr '\r' '\n' <"$log" | grep -vE '^ *[0-9]+/[0-9]+ Test|^\[ *[0-9]' || true
   read -r bad all < <(sed -nE 's/.* ([0-9]+) tests? failed out of ([0-9]+)$/\1 \2/p' "$log") || true
   remember < <(sed -nE '/\(Skipped\)$/!s/^\t *[0-9]+ - (.*) \((.*)\).*$/\1: \2/p' "$log")
@@ -321,10 +324,11 @@ sanitized() {
     -DPHRENIC_SANITIZE="$sanitizers" && build "$folder" "$@"
 }
 
-# programs FOLDER [OPTION...] runs the test programs there, each once, and counts the tests in them by the XML that they
+# programs FOLDER [OPTION...] runs the test programs there, each once, one more at a time than there are processors, since
+# those of the server and the client wait for a quarter of their time, and counts the tests in them by the XML that they
 # write; a program that writes none counts as one.
 programs() {
-  local xml good bad
+  local xml good bad at_a_time=$(($(nproc) + 1))
   xml=$results/$(basename "$1")
   rm -rf "$xml"
   GTEST_OUTPUT=xml:$xml/ ctests "$@"
