@@ -7,11 +7,11 @@ stage_table() {
 format     20 clang-format and prettier
 scripts    40 shellcheck, and the tests of deploy/
 proto       5 buf's lint; that clients of the last release go on working
-web        40 type check, unit tests and build of the viewer
+web        60 type check, unit tests and build of the viewer
 build     430 the Release build by gcc, warnings as errors
-tests     330 what depends on that build: laws of mechanics, formats, physiology, judges, benches, trials
+tests     400 what depends on that build: laws of mechanics, formats, physiology, judges, benches, trials
 e2e       430 the viewer in headless Chromium
-asan     1200 all other tests under ASan and UBSan, built by clang
+asan     1000 all other tests under ASan and UBSan, built by clang
 tsan      120 the tests of threads under ThreadSanitizer
 tidy      330 clang-tidy; gcc's warnings in the tests that only clang compiles
 quick_build 480 the Release build of the server and of the laws
