@@ -12,6 +12,7 @@
 #include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
 #include "client/connection/errors.h"
+#include "client/files/local_models.h"
 #include "client/files/whole_file.h"
 #include "client/print/output.h"
 #include "client/print/table.h"
@@ -19,9 +20,7 @@
 #include "server/calibrate/preset_text.h"
 #include "server/mechanics/compile/presets.h"
 #include "server/schema/fields.h"
-#include "server/schema/places.h"
 #include "server/service/calls/status.h"
-#include "server/session/models.h"
 
 namespace phrenic::client {
 namespace {
@@ -98,10 +97,7 @@ absl::Status ReadCalibrateScene(const Context& context, const CalibrateOptions& 
   if (!settings.ok()) return settings.status();
   const absl::StatusOr<v1::SceneSource> source = ReadScene(options.scene);
   if (!source.ok()) return source.status();
-  std::vector<std::string> folders = {Installed("scenes", PHRENIC_SCENES_DIR)};
-  if (!options.data_dir.empty()) folders.push_back(options.data_dir + "/scenes");
-  session::Models models(session::SceneCatalogue(folders), options.data_dir, 1, nullptr, {},
-                         session::MeshCache(session::DefaultCacheFolder()));
+  session::Models models = LocalModels(options.data_dir);
   const absl::StatusOr<v1::Scene> scene = models.Resolve(*source);
   if (!scene.ok()) return scene.status();
   const absl::StatusOr<v1::Parameters> preset = FindPreset(*scene, options.preset);

@@ -10,6 +10,7 @@
 #include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
 #include "client/connection/errors.h"
+#include "client/files/local_models.h"
 #include "client/files/whole_file.h"
 #include "client/print/output.h"
 #include "client/print/table.h"
@@ -19,9 +20,7 @@
 #include "server/mechanics/compile/presets.h"
 #include "server/mesh/units.h"
 #include "server/physiology/lung_breath.h"
-#include "server/schema/places.h"
 #include "server/service/calls/status.h"
-#include "server/session/models.h"
 #include "server/vtk/image_data.h"
 
 namespace phrenic::client {
@@ -64,12 +63,7 @@ absl::Status CheckField(const LungsOptions& options) {
 absl::StatusOr<std::shared_ptr<const Model>> CompileLungs(const Context& context, const LungsOptions& options) {
   const absl::StatusOr<v1::SceneSource> source = ReadScene(options.scene);
   if (!source.ok()) return source.status();
-  std::vector<std::string> folders = {Installed("scenes", PHRENIC_SCENES_DIR)};
-  if (!options.data_dir.empty()) folders.push_back(options.data_dir + "/scenes");
-  session::Models models(session::SceneCatalogue(folders), options.data_dir, 1, nullptr, {},
-                         session::MeshCache(session::DefaultCacheFolder()));
-  const Progress compiling("compiling " + options.scene.scene);
-  return models.Get(*source, {.cancelled = [&context] { return context.interruption->happened(); }});
+  return CompileLocally(context, *source, options.scene.scene, options.data_dir);
 }
 
 absl::StatusOr<v1::Parameters> LungParameters(const Model& model, const std::string& preset,

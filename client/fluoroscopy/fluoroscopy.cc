@@ -10,6 +10,7 @@
 #include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
 #include "client/connection/errors.h"
+#include "client/files/local_models.h"
 #include "client/files/whole_file.h"
 #include "client/print/output.h"
 #include "client/terminal/progress.h"
@@ -17,9 +18,7 @@
 #include "server/imaging/gzip.h"
 #include "server/mechanics/compile/presets.h"
 #include "server/mechanics/step/step.h"
-#include "server/schema/places.h"
 #include "server/service/calls/status.h"
-#include "server/session/models.h"
 
 namespace phrenic::client {
 namespace {
@@ -63,12 +62,7 @@ absl::StatusOr<fluoroscopy::CArm> ReadArm(const FluoroscopyOptions& options) {
 absl::StatusOr<std::shared_ptr<const Model>> CompileScene(const Context& context, const FluoroscopyOptions& options) {
   const absl::StatusOr<v1::SceneSource> source = ReadScene(options.scene);
   if (!source.ok()) return source.status();
-  std::vector<std::string> folders = {Installed("scenes", PHRENIC_SCENES_DIR)};
-  if (!options.data_dir.empty()) folders.push_back(options.data_dir + "/scenes");
-  session::Models models(session::SceneCatalogue(folders), options.data_dir, 1, nullptr, {},
-                         session::MeshCache(session::DefaultCacheFolder()));
-  const Progress compiling("compiling " + options.scene.scene);
-  return models.Get(*source, {.cancelled = [&context] { return context.interruption->happened(); }});
+  return CompileLocally(context, *source, options.scene.scene, options.data_dir);
 }
 
 // Runs the model from its initial state until the time.

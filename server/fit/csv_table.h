@@ -17,7 +17,7 @@ class CsvTable {
  public:
   CsvTable(std::string_view name, std::string_view bytes) : reader_(name, bytes) {}
 
-  // Reads the comments and the header. INVALID_ARGUMENT "name: ..." if there is none.
+  // Reads the comments and the header. INVALID_ARGUMENT "name: ..." if the file has no header.
   absl::Status ReadHeader();
   // The header's names, in lower case.
   const std::vector<std::string>& names() const { return names_; }

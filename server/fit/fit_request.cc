@@ -161,7 +161,7 @@ std::string MeasuredNames(const v1::FitMotionRequest& request) {
   return absl::StrJoin(names, ", ");
 }
 
-// Sets the scene, or why there is none.
+// Sets the scene, or the reason why the fit gives no scene.
 void SetScene(v1::Scene scene, v1::MotionFitResult& result) {
   if (const absl::Status status = schema::Validate(scene); status.ok()) {
     *result.mutable_scene() = std::move(scene);

@@ -31,7 +31,7 @@ absl::Status ReadPlace(const CsvTable& table, const std::array<int, 3>& columns,
   return absl::OkStatus();
 }
 
-// Returns the columns PREFIX_x, PREFIX_y, PREFIX_z; -1 where there is none.
+// Returns the columns PREFIX_x, PREFIX_y, PREFIX_z; -1 for a column that the file lacks.
 std::array<int, 3> ColumnsFor(const CsvTable& table, const std::string& prefix) {
   std::array<int, 3> columns = {};
   for (size_t axis = 0; axis < 3; ++axis) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -17,16 +18,23 @@
 
 namespace phrenic {
 
-// Returns a shipped scene, for example "thorax", compiled; with a resolution [mm], all of its generated bodies have it.
-inline std::shared_ptr<const Model> CompileShipped(const std::string& name, double resolution_mm = 0) {
+// Returns a shipped scene, for example "thorax", compiled; generated bodies have the resolution [mm] that the function
+// gives, their own for 0.
+inline std::shared_ptr<const Model> CompileShipped(const std::string& name,
+                                                   const std::function<double(const v1::Body&)>& resolution_mm) {
   std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/" + name + ".textproto");
   std::stringstream text;
   text << file.rdbuf();
   return *Compile(*schema::ParseScene(name + ".textproto", text.str()), [=](const v1::Body& body) {
     v1::Generated shape = body.generated();
-    if (resolution_mm > 0) shape.set_resolution_mm(resolution_mm);
+    if (const double wanted = resolution_mm(body); wanted > 0) shape.set_resolution_mm(wanted);
     return anatomy::Generate(body.anatomy(), shape);
   });
+}
+
+// With one resolution for all generated bodies.
+inline std::shared_ptr<const Model> CompileShipped(const std::string& name, double resolution_mm = 0) {
+  return CompileShipped(name, [resolution_mm](const v1::Body&) { return resolution_mm; });
 }
 
 // Returns how far a dome has descended from rest in the column at its apex [mm].
