@@ -72,7 +72,7 @@ run_stages() {
   mkdir -p "$results"
   for name in "$@"; do
     say "Stage $name ($(($# - ${#left[@]} + 1)) of $#): $(about "$name"). About $(time_left "${left[@]}") left."
-    if [[ $name == tests && -z $beside ]]; then begin_beside "${left[@]}"; fi
+    if [[ $name == tests ]]; then begin_beside "${left[@]}"; fi
     run_stage "$name"
     left=("${left[@]:1}")
   done
@@ -96,14 +96,23 @@ note_time() {
   summary+=("$(printf '%-12s %-7s %5d s' "$1" "$2" "$3")")
 }
 
-# --- beside: compilation runs at the lowest priority while tests wait ---
+# --- beside: compilation runs at the lowest priority while packages are installed and tests wait ---
 beside=
 # The checks of a stage that compile and run nothing.
 compiled_by() {
   case $1 in
+    build) echo release_build ;;
     asan) echo asan_build ;;
     tsan) echo tsan_build ;;
     tidy) printf '%s\n' tidy warnings ;;
+  esac
+}
+
+# begin_build STAGE... starts the Release build if it is one of the stages, and no tests come before it.
+begin_build() {
+  case " $* " in
+    *" tests "*" build "*) ;;
+    *" build "*) begin_beside build ;;
   esac
 }
 
@@ -113,6 +122,7 @@ begin_beside() {
   local stage name status
   mapfile -t names < <(for stage in "$@"; do compiled_by "$stage"; done)
   [[ ${#names[@]} -gt 0 ]] || return 0
+  mkdir -p "$results"
   for name in "${names[@]}"; do rm -f "$results/$name.status"; done
   set -m # a process group of its own, which finish can end
   (
@@ -273,8 +283,12 @@ check_build() {
   configure_release && build "$root/build" "$@"
 }
 
+check_release_build() {
+  check_build phrenicd phrenic package_words python_package release_tests
+}
+
 stage_build() {
-  check check_build phrenicd phrenic package_words python_package release_tests
+  check beside release_build
 }
 
 # The laws: tests of ctest whose names begin so.

@@ -121,6 +121,10 @@ checks_run_beside_tests() {
     check_warnings() { true; }
     begin_beside tidy; stage_e2e; ps -o stat= -p "$beside"; trap finish EXIT')
   expect_equal TheyPauseWhileBrowsersDraw "$(head -2 <<<"$output" | cut -c1 | tr -d '\n' | tr RSD r)" Tr
+  expect TheReleaseBuildRunsBesideTheInstallation "$(in_checks eval 'trap finish EXIT
+    check_build() { echo "build at priority $(nice)"; }
+    begin_build format build tests; echo installed; run_stages build')" "installed" "build at priority 19" "1 passed, 0 failed"
+  expect_equal NoBuildRunsBesideTestsOfAnother "$(in_checks eval 'begin_build tests build; echo "${beside:-alone}"')" alone
   expect_equal WithoutTestsTheyRunAlone "$(in_checks run_stages tidy | grep -c 'priority 19')" 0
 }
 
