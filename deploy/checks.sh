@@ -111,7 +111,7 @@ compiled_by() {
 # begin_build STAGE... starts the Release build if it is one of the stages, and no tests come before it.
 begin_build() {
   case " $* " in
-    *" tests "*" build "*) ;;
+    *" tests "*"build "*) ;;
     *" build "*) begin_beside build ;;
   esac
 }

@@ -124,7 +124,7 @@ checks_run_beside_tests() {
   expect TheReleaseBuildRunsBesideTheInstallation "$(in_checks eval 'trap finish EXIT
     check_build() { echo "build at priority $(nice)"; }
     begin_build format build tests; echo installed; run_stages build')" "installed" "build at priority 19" "1 passed, 0 failed"
-  expect_equal NoBuildRunsBesideTestsOfAnother "$(in_checks eval 'begin_build tests build; echo "${beside:-alone}"')" alone
+  expect_equal NoBuildRunsBesideTestsBeforeIt "$(in_checks eval 'check_build() { true; }; begin_build tests build; echo "${beside:-alone}"')" alone
   expect_equal WithoutTestsTheyRunAlone "$(in_checks run_stages tidy | grep -c 'priority 19')" 0
 }
 
