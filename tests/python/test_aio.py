@@ -55,7 +55,7 @@ class AioTest(SessionTest, unittest.IsolatedAsyncioTestCase):
                     self.assertTrue(argument in taken or "options" in taken, f"{twin.__name__}.{name}({argument}=...)")
 
     async def test_a_batch_has_the_bits_of_the_blocking_one(self):
-        forces = [{"breath_force": 0.1 * i} for i in range(300)]
+        forces = [{"breath_force": 0.05 * i} for i in range(300)]
         expected = {run.index: run.state_hash for run in phrenic.batch("cube-springs", forces, seconds=0.1)}
         runs = [run async for run in phrenic.aio.batch("cube-springs", forces, seconds=0.1, threads=2)]
         self.assertEqual({run.index: run.state_hash for run in runs}, expected)
