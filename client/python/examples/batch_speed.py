@@ -53,7 +53,7 @@ with phrenic.local() as server:
         wall, cpu = time.perf_counter() - wall, used(server) - cpu
         assert expected in (None, hashes), "the bits differ"
         expected, alone = hashes, alone or of_runs or None
-        efficiency = alone / cpu if threads else float("nan")
+        efficiency = alone / cpu if threads and cpu > 0 else float("nan")
         rows.append({"what": f"batch, threads {threads}" if threads else "loop of sessions", "wall_s": wall, "cpu_s": cpu,
                      "efficiency": efficiency})  # fmt: skip
     print(phrenic.Table(rows))
