@@ -32,9 +32,10 @@ class CellBatch {
     request_.set_summary(true);
   }
 
-  bool Has(const CampaignCell& cell) const {
-    return cell.row.scene() == first_.scene() && cell.row.resolution_mm() == first_.resolution_mm() &&
-           cell.row.preset() == first_.preset();
+  // True if the cell belongs to this batch, and there is room for it.
+  bool Takes(const CampaignCell& cell) const {
+    return request_.runs_size() < study::kMostBatchRuns && cell.row.scene() == first_.scene() &&
+           cell.row.resolution_mm() == first_.resolution_mm() && cell.row.preset() == first_.preset();
   }
   // Returns the number of the run in the batch.
   int Add(const CampaignCell& cell) {
@@ -83,7 +84,7 @@ CellRuns UnfinishedRuns(const std::vector<CampaignCell>& cells, const Share& sha
   CellRuns unfinished;
   for (auto i = static_cast<size_t>(share.number); i < cells.size(); i += static_cast<size_t>(share.count)) {
     if (folder.Has(cells[i])) continue;
-    if (unfinished.batches.empty() || !unfinished.batches.back().Has(cells[i])) {
+    if (unfinished.batches.empty() || !unfinished.batches.back().Takes(cells[i])) {
       unfinished.batches.emplace_back(cells[i]);
     }
     CellBatch& batch = unfinished.batches.back();
