@@ -1,6 +1,9 @@
 #include "client/cli/guide.h"
 
 #include <algorithm>
+#include <vector>
+
+#include "server/schema/names.h"
 
 namespace phrenic::client {
 namespace {
@@ -19,7 +22,10 @@ constexpr NamedText kExitCodes[] = {
     {"1", "failure"},
     {"2", "invalid command line or settings file"},
     {"3", "no server"},
-    {"4", "a limit is exceeded, a replay ends in another state, or a calibration reaches no such breath"},
+    {"4",
+     "a limit is exceeded, a replay ends in another state, a calibration reaches no such breath, or a required section "
+     "of "
+     "a credibility report is not met"},
     {"5", "not permitted: another user controls the session, or the account lacks the right"},
     {"130", "interrupted"},
 };
@@ -56,7 +62,7 @@ constexpr Synonym kSynonyms[] = {
     {"version", "--version"}, {"diff", "compare"},       {"distance", "compare"},
     {"clone", "fork"},        {"copy", "fork"},          {"simulate", "run"},
     {"parameters", "set"},    {"breathe", "physiology"}, {"completions", "completion"},
-    {"tune", "calibrate"},
+    {"tune", "calibrate"},    {"learn", "--help"},       {"tutorial", "--help"},
 };
 
 }  // namespace
@@ -74,6 +80,12 @@ std::string SettingsText() {
 std::string CommandMeantBy(std::string_view word) {
   const auto found = std::ranges::find(kSynonyms, word, &Synonym::word);
   return found == std::end(kSynonyms) ? "" : found->command;
+}
+
+std::string CommandNearlyMeantBy(std::string_view word) {
+  std::vector<std::string> words;
+  for (const Synonym& synonym : kSynonyms) words.emplace_back(synonym.word);
+  return CommandMeantBy(schema::NearestName(word, words));
 }
 
 }  // namespace phrenic::client

@@ -24,6 +24,8 @@ std::string SettingsText();
 
 // Returns the command that a user means by a word: "sessions" for "ls"; empty if the word is not known.
 std::string CommandMeantBy(std::string_view word);
+// The same for a word that is nearly one of these, such as "lern" for "learn".
+std::string CommandNearlyMeantBy(std::string_view word);
 
 }  // namespace phrenic::client
 

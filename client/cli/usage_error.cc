@@ -46,8 +46,10 @@ std::vector<std::string> CommandNames(const CLI::App& command) {
 }
 
 std::string NoSuchCommand(const CLI::App& command, const std::string& word) {
-  std::string meant = command.get_parent() == nullptr ? CommandMeantBy(word) : "";
+  const bool at_top = command.get_parent() == nullptr;
+  std::string meant = at_top ? CommandMeantBy(word) : "";
   if (meant.empty()) meant = schema::NearestName(word, CommandNames(command));
+  if (meant.empty() && at_top) meant = CommandNearlyMeantBy(word);
   const std::string what = absl::StrCat("there is no command \"", FullName(command), " ", word, "\"");
   if (meant.empty()) return absl::StrCat(what, "\n  all commands: ", FullName(command), " --help\n");
   return absl::StrCat(what, "; did you mean ", meant, "?\n  try: ", FullName(command), " ", meant,

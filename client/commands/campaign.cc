@@ -8,7 +8,8 @@
 #include "absl/strings/str_format.h"
 #include "client/campaign/report.h"
 #include "client/campaign/results.h"
-#include "client/campaign/worker.h"
+#include "client/campaign/runs.h"
+#include "client/campaign/slurm.h"
 #include "client/cli/argument_kinds.h"
 #include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
@@ -21,12 +22,12 @@
 namespace phrenic::client {
 namespace {
 
-constexpr int kSharesPerProcess = 8;  // small shares, so that all processes end at about the same time
+constexpr int kSharesPerJob = 8;  // small shares, so that all jobs end at about the same time
 
 struct CampaignOptions {
   std::string file;  // the campaign, in text format
   std::string out;   // folder of results
-  int jobs = 0;      // number of concurrent processes; 0: one per core
+  int jobs = 0;      // number of runs, or of Slurm's jobs, at a time; 0: one per core
   std::string on = "here";
   std::string share;  // of `campaign work`
   std::string page, data_dir;
@@ -51,24 +52,31 @@ absl::StatusOr<OpenCampaign> Open(const CampaignOptions& options) {
 
 std::string AbsolutePath(const std::string& path) { return std::filesystem::absolute(path).string(); }
 
-absl::Status RunAll(const Context& context, const CampaignOptions& options, const OpenCampaign& opened) {
-  Workers workers;
-  workers.arguments = {"campaign", "work", AbsolutePath(options.file), "--out", AbsolutePath(options.out)};
+absl::Status RunHere(const Context& context, const CampaignOptions& options, const OpenCampaign& opened) {
+  auto done = static_cast<double>(opened.folder.Finished(opened.cells));
+  Progress progress(opened.campaign.name(), static_cast<double>(opened.cells.size()));
+  progress.Update(done);
+  return RunCells(context, opened.cells, Share(), options.jobs, options.data_dir, opened.folder,
+                  [&] { progress.Update(++done); });
+}
+
+absl::Status RunAsJobs(const Context& context, const CampaignOptions& options, const OpenCampaign& opened) {
+  SlurmJobs jobs;
+  jobs.arguments = {"campaign", "work", AbsolutePath(options.file), "--out", AbsolutePath(options.out)};
   if (!options.data_dir.empty()) {
-    workers.arguments.insert(workers.arguments.end(), {"--data", AbsolutePath(options.data_dir)});
+    jobs.arguments.insert(jobs.arguments.end(), {"--data", AbsolutePath(options.data_dir)});
   }
-  workers.concurrent =
+  jobs.concurrent =
       options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const auto total = static_cast<double>(opened.cells.size());
-  const int shares = static_cast<int>(std::min<double>(total, kSharesPerProcess * workers.concurrent));
+  jobs.shares = static_cast<int>(std::min<double>(total, kSharesPerJob * jobs.concurrent));
   Progress progress(opened.campaign.name(), total);
   int calls = 0;
   const auto wait = [&] {
     if (calls++ % 10 == 0) progress.Update(static_cast<double>(opened.folder.Finished(opened.cells)));
     return !context.interruption->happened();
   };
-  if (options.on == "slurm") return RunOnSlurm(workers, shares, AbsolutePath(options.out), wait);
-  return RunHere(workers, shares, wait);
+  return RunOnSlurm(jobs, AbsolutePath(options.out), wait);
 }
 
 // Prints the table, writes the page and checks the limits. Returns kMissed if a limit is exceeded, kFailed if runs are
@@ -102,7 +110,8 @@ int RunCampaign(const Context& context, const CampaignOptions& options) {
   const std::int64_t finished = opened->folder.Finished(opened->cells);
   if (finished > 0) std::cerr << absl::StrFormat("%d runs are already finished\n", finished);
   if (finished < static_cast<std::int64_t>(opened->cells.size())) {
-    const absl::Status status = RunAll(context, options, *opened);
+    const absl::Status status =
+        options.on == "slurm" ? RunAsJobs(context, options, *opened) : RunHere(context, options, *opened);
     if (absl::IsCancelled(status)) return kInterrupted;
     if (!status.ok()) return Fail(status);
   }
@@ -114,7 +123,7 @@ int WorkOnCampaign(const Context& context, const CampaignOptions& options) {
   if (!opened.ok()) return Fail(opened.status());
   const auto share = ReadShare(options.share);
   if (!share.ok()) return Fail(share.status());
-  const absl::Status status = Work(context, opened->cells, *share, options.data_dir, opened->folder);
+  const absl::Status status = RunCells(context, opened->cells, *share, 1, options.data_dir, opened->folder, [] {});
   if (absl::IsCancelled(status)) return kInterrupted;
   return status.ok() ? kOk : Fail(status);
 }
@@ -143,7 +152,8 @@ CommandFunction SetUpCampaignRun(CLI::App& command) {
   const auto options = AddCampaign(command);
   AddDataFolder(command, options->data_dir);
   AddPage(command, *options);
-  command.add_option("--jobs", options->jobs, "number of concurrent processes (one per core)")
+  command
+      .add_option("--jobs", options->jobs, "number of runs at a time (one per core, here the most), or of Slurm's jobs")
       ->check(NumberIn(1, 10'000));
   command.add_option("--on", options->on, "where to run: here or slurm")->capture_default_str();
   return Bind(&RunCampaign, options);

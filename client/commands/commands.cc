@@ -377,7 +377,7 @@ constexpr Command kCommands[] = {
      {{"phrenic campaign report sweep.textproto --out results --page results.html"}}},
     {"campaign work",
      kBelow,
-     "Compute a share of the runs, as the processes of `campaign run` do",
+     "Compute a share of the runs, as the Slurm jobs of `campaign run` do",
      Formats::kDocument,
      SetUpCampaignWork,
      {{"phrenic campaign work sweep.textproto --out results --share 0/16", "on any machine that sees the folder"}}},

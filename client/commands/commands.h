@@ -96,8 +96,8 @@ CommandFunction SetUpStudyDelete(CLI::App& command);
 // credibility.cc: the studies that a context requires, in this process, and a report of them (credibility/). With
 // --check, kMissed if a required section is not met.
 CommandFunction SetUpCredibility(CLI::App& command);
-// campaign.cc: runs in processes of their own, on this machine or on Slurm (campaign/). `work` is what these processes
-// run. Repeated, `run` continues where it was interrupted. kMissed if a limit is exceeded, kFailed if runs failed.
+// campaign.cc: many runs, on this machine's cores or as jobs of Slurm, which call `work` (campaign/). Repeated, `run`
+// continues where it was interrupted. kMissed if a limit is exceeded, kFailed if runs failed.
 CommandFunction SetUpCampaignRun(CLI::App& command);
 CommandFunction SetUpCampaignReport(CLI::App& command);
 CommandFunction SetUpCampaignWork(CLI::App& command);

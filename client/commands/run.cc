@@ -133,9 +133,9 @@ int ExportRun(const Context& context, const RunOptions& options, service::Server
 void PrintCost(const RunOptions& options, const v1::CompileReport& report, const RunCost& cost,
                const std::optional<study::ThesisFigure>& thesis) {
   const double rate = static_cast<double>(cost.steps) / cost.wall;
-  std::cout << absl::StrFormat("%s: %d vertices, %d springs, %d rigid links, %d attachments\n", report.scene(),
-                               report.simulated_vertices(), report.springs(), report.rigid_links(),
-                               report.attachments());
+  std::cout << absl::StrFormat("%s: %d vertices, %d springs, %d rigid links, %d attachments; compiled in %.3f s\n",
+                               report.scene(), report.simulated_vertices(), report.springs(), report.rigid_links(),
+                               report.attachments(), report.compile_seconds());
   std::cout << absl::StrFormat("%.3f s simulated in %d steps: %.3f s wall, %.3f s CPU\n", cost.simulated, cost.steps,
                                cost.wall, cost.cpu);
   Table table({"", "steps/s", "x real time", "us CPU per step", "ns CPU per spring and step"});

@@ -1,8 +1,12 @@
 // `phrenic study motion`: fits and judges the breaths of many people, in this process.
 #include <filesystem>
+#include <functional>
 #include <iostream>
+#include <optional>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/cli/argument_kinds.h"
 #include "client/cli/shared_options.h"
 #include "client/commands/commands.h"
 #include "client/connection/errors.h"
@@ -17,6 +21,7 @@
 #include "server/fit/motion_study.h"
 #include "server/schema/file_bytes.h"
 #include "server/service/calls/status.h"
+#include "server/study/batch/run_pool.h"
 
 namespace phrenic::client {
 namespace {
@@ -24,6 +29,7 @@ namespace {
 struct MotionStudyOptions {
   SceneOptions scene = {.scene = "thorax"};
   std::string cases, data_dir, page, keep;  // empty: none
+  int threads = 0;                          // people at a time; 0: one per core
   fit::FitOptions fit;
 };
 
@@ -41,8 +47,8 @@ std::string KeptFile(const MotionStudyOptions& options, const fit::LungTemplates
   return absl::StrCat(options.keep, "/", person.name, "-", Sha256Hex(text).substr(0, 16), ".fit");
 }
 
-// Keeps fits as files, each with the hash of its bytes before them; `found` counts those that are there.
-fit::KeptFits KeepIn(const MotionStudyOptions& options, const fit::LungTemplates& lungs, int& found) {
+// Keeps fits as files, each with the hash of its bytes before them. Thread-safe.
+fit::KeptFits KeepIn(const MotionStudyOptions& options, const fit::LungTemplates& lungs) {
   if (options.keep.empty()) return {};
   const auto find = [&](const fit::StudyCase& person) -> std::optional<fit::MotionFit> {
     const std::optional<std::string> bytes = ReadBytes(KeptFile(options, lungs, person));
@@ -50,9 +56,7 @@ fit::KeptFits KeepIn(const MotionStudyOptions& options, const fit::LungTemplates
     if (!bytes || bytes->size() < kHash || Sha256Hex(bytes->substr(kHash)) != bytes->substr(0, kHash)) {
       return std::nullopt;
     }
-    std::optional<fit::MotionFit> fit = fit::ReadKeptFit(std::string_view(*bytes).substr(kHash));
-    found += fit ? 1 : 0;
-    return fit;
+    return fit::ReadKeptFit(std::string_view(*bytes).substr(kHash));
   };
   const auto keep = [&](const fit::StudyCase& person, const fit::MotionFit& fit) {
     std::error_code error;
@@ -63,6 +67,77 @@ fit::KeptFits KeepIn(const MotionStudyOptions& options, const fit::LungTemplates
   return {find, keep};
 }
 
+// Fits all people on the threads of batches (study/batch/run_pool.h) as soon as the first is asked for. What failed is
+// left to the study, which says so.
+class PeopleFits {
+ public:
+  PeopleFits(const Context& context, const MotionStudyOptions& options, const fit::LungTemplates& lungs,
+             const std::vector<fit::StudyCase>& cases, Progress& progress)
+      : context_(context),
+        options_(options),
+        lungs_(lungs),
+        cases_(cases),
+        kept_(KeepIn(options, lungs)),
+        progress_(progress),
+        fits_(cases.size()) {}
+
+  // Returns the fit of one of the cases, once; nothing if it failed.
+  std::optional<fit::MotionFit> Take(const fit::StudyCase& person) {
+    if (!begun_) FitAll();
+    return std::exchange(fits_[static_cast<size_t>(&person - cases_.data())], std::nullopt);
+  }
+  const fit::KeptFits& kept() const { return kept_; }
+  // Returns how many were kept from before.
+  int found() const { return found_; }
+
+ private:
+  struct Done {
+    size_t person;
+    bool found;
+    fit::MotionFit fit;
+  };
+
+  absl::StatusOr<Done> FindOrFit(size_t person, const std::function<bool()>& ended) const {
+    const fit::StudyCase& each = cases_[person];
+    if (kept_.find) {
+      if (auto fit = kept_.find(each)) return Done{person, true, *std::move(fit)};
+    }
+    auto fit = fit::FitMotion(lungs_, each.landmarks, options_.fit, [&](double, std::string_view) { return !ended(); });
+    if (!fit.ok()) return fit.status();
+    return Done{person, false, *std::move(fit)};
+  }
+
+  void FitAll() {
+    begun_ = true;
+    size_t done = 0;
+    const study::MakeResult<Done> make = [this](size_t person, const std::function<bool()>& ended) {
+      return FindOrFit(person, ended);
+    };
+    const auto take = [&](Done result) {
+      const fit::StudyCase& person = cases_[result.person];
+      if (!result.found && kept_.keep && !kept_.keep(person, result.fit).ok()) return false;
+      found_ += result.found ? 1 : 0;
+      fits_[result.person] = std::move(result.fit);
+      progress_.SetDetail(person.name);
+      progress_.Update(static_cast<double>(++done) / static_cast<double>(cases_.size()));
+      return true;
+    };
+    study::RunOnThreads<Done>(cases_.size(), study::ThreadsFor(options_.threads, cases_.size()), make, take, [this] {
+      return context_.interruption->happened();
+    }).IgnoreError();
+  }
+
+  const Context& context_;
+  const MotionStudyOptions& options_;
+  const fit::LungTemplates& lungs_;
+  const std::vector<fit::StudyCase>& cases_;
+  const fit::KeptFits kept_;
+  Progress& progress_;
+  bool begun_ = false;
+  int found_ = 0;
+  std::vector<std::optional<fit::MotionFit>> fits_;
+};
+
 absl::StatusOr<fit::MotionStudy> RunMotionStudy(const Context& context, const MotionStudyOptions& options) {
   const auto cases = fit::ReadCases(options.cases);
   if (!cases.ok()) return cases.status();
@@ -71,14 +146,12 @@ absl::StatusOr<fit::MotionStudy> RunMotionStudy(const Context& context, const Mo
   const auto lungs = ReadSceneLungs(*scene, options.data_dir);
   if (!lungs.ok()) return lungs.status();
   Progress progress("fitting people", 1);
-  int found = 0;
-  const auto show = [&](double done, std::string_view stage) {
-    progress.SetDetail(std::string(stage));
-    progress.Update(done);
-    return !context.interruption->happened();
-  };
-  auto study = fit::StudyMotion(lungs->templates, *cases, options.fit, show, KeepIn(options, lungs->templates, found));
-  if (found > 0) std::cerr << "kept from before: " << found << " of " << cases->size() << " people\n";
+  PeopleFits fits(context, options, lungs->templates, *cases, progress);
+  const auto go_on = [&](double, std::string_view) { return !context.interruption->happened(); };
+  auto study =
+      fit::StudyMotion(lungs->templates, *cases, options.fit, go_on,
+                       {[&fits](const fit::StudyCase& person) { return fits.Take(person); }, fits.kept().keep});
+  if (fits.found() > 0) std::cerr << "kept from before: " << fits.found() << " of " << cases->size() << " people\n";
   return study;
 }
 
@@ -110,6 +183,7 @@ CommandFunction SetUpStudyMotion(CLI::App& command) {
   command.add_option("--page", options->page, "write the table and a plot per person to this .html file");
   command.add_option("--keep", options->keep,
                      "keep each finished person in this folder, and read finished ones from it");
+  command.add_option("--threads", options->threads, "people at a time (one per core)")->check(NumberIn(1, 10'000));
   AddDataFolder(command, options->data_dir);
   return Bind(&MotionStudyCommand, options);
 }

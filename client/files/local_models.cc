@@ -10,7 +10,9 @@ namespace phrenic::client {
 session::Models LocalModels(const std::string& data_dir) {
   std::vector<std::string> folders = {Installed("scenes", PHRENIC_SCENES_DIR)};
   if (!data_dir.empty()) folders.push_back(data_dir + "/scenes");
-  return session::Models(session::SceneCatalogue(folders), data_dir, 1, nullptr, {},
+  session::Limits limits;
+  limits.compile_seconds = 0;  // the user can interrupt it
+  return session::Models(session::SceneCatalogue(folders), data_dir, 1, nullptr, limits,
                          session::MeshCache(session::DefaultCacheFolder()));
 }
 

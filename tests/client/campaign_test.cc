@@ -53,16 +53,21 @@ TEST_F(Campaigns, RunEveryCombinationAsOneRunWould) {
   EXPECT_THAT(ReadAll(Scratch("page.html")), HasSubstr("12 runs of 0.5 s: 12 done"));
 }
 
-TEST_F(Campaigns, ResumeAfterAKillAndRepeatNothing) {
+TEST_F(Campaigns, ResumeAfterCtrlCAndAKillAndRepeatNothing) {
   std::string sweep = kSweep;
   sweep.replace(sweep.find("seconds: 0.5"), 12, "seconds: 60");
   const std::vector<std::string> words = {"campaign", "run", WriteScratch("sweep.textproto", sweep), "--out", folder_};
-  const pid_t campaign = Start("phrenic", words, Scratch("out"), Scratch("err"));
-  while (Results().size() < 3 && waitpid(campaign, nullptr, WNOHANG) == 0) usleep(2'000);
-  kill(campaign, SIGKILL);
-  waitpid(campaign, nullptr, 0);
+  for (const int signal : {SIGINT, SIGKILL}) {
+    const size_t finished = Results().size();
+    const pid_t campaign = Start("phrenic", words, Scratch("out"), Scratch("err"));
+    while (Results().size() < finished + 3 && waitpid(campaign, nullptr, WNOHANG) == 0) usleep(2'000);
+    kill(campaign, signal);
+    int status = 0;
+    waitpid(campaign, &status, 0);
+    EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : 0, signal == SIGINT ? 130 : 0) << ReadAll(Scratch("err"));
+  }
   const auto before = Results();
-  ASSERT_GE(before.size(), 3);
+  ASSERT_GE(before.size(), 6);
   const Outcome outcome = Ask("run", sweep);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const auto after = Results();
@@ -89,6 +94,31 @@ TEST_F(Campaigns, ARejectedRunIsARowAndTheOthersContinue) {
   EXPECT_EQ(rows[0]["outcome"], "failed");
   EXPECT_THAT(rows[0]["why"].get<std::string>(), HasSubstr("no such preset"));
   EXPECT_EQ(rows[1]["outcome"], "done");
+}
+
+TEST_F(Campaigns, ARunThatDivergesIsARowAndTheOthersContinue) {
+  const Outcome outcome = Ask("run", R"(
+    name: "too long" scenes: "pressure-lungs" seconds: 3
+    axes { parameter: 'integrator' values: 'explicit_euler' values: 'semi_implicit_euler' }
+    axes { parameter: 'time_step' values: '0.1' values: '0.001' } )",
+                              {"-o", "json"});
+  EXPECT_EQ(outcome.code, 1);
+  const nlohmann::json rows = outcome.json()["rows"];
+  ASSERT_EQ(rows.size(), 4) << outcome.err;
+  EXPECT_EQ(rows[0]["outcome"], "diverged");
+  EXPECT_THAT(rows[0]["why"].get<std::string>(), HasSubstr("diverged at"));
+  EXPECT_EQ(rows[3]["outcome"], "done");
+}
+
+TEST_F(Campaigns, HaveTheSameBitsAtAnyNumberOfThreads) {
+  std::map<std::string, std::string> bits;
+  for (const char* threads : {"1", "2"}) {
+    std::filesystem::remove_all(folder_);
+    nlohmann::json result = Ask("run", kSweep, {"--jobs", threads, "-o", "json"}).json();
+    for (nlohmann::json& row : result["rows"]) row["cpu_us_a_step"] = row["times_real_time"] = 0;
+    bits[threads] = result.dump();
+  }
+  EXPECT_EQ(bits["1"], bits["2"]);
 }
 
 TEST_F(Campaigns, ErrorsNameTheFieldOrTheFile) {

@@ -206,8 +206,9 @@ TEST(StudyMotion, MakesATableAndAPage) {
   EXPECT_THAT(study.out, HasSubstr("\na,"));
   EXPECT_THAT(study.out, HasSubstr("\nmean,"));
   EXPECT_THAT(ReadAll(Scratch("motion.html")), HasSubstr("<h2>b</h2>"));
-  const std::vector<std::string> keeping = {
-      "study", "motion", "--cases", Scratch("people"), "--resolution", "12", "--keep", Scratch("kept"), "-o", "csv"};
+  const std::vector<std::string> keeping = {"study",        "motion", "--cases", Scratch("people"),
+                                            "--resolution", "12",     "--keep",  Scratch("kept"),
+                                            "--threads",    "1",      "-o",      "csv"};
   const Outcome first = Phrenic(keeping), second = Phrenic(keeping);
   EXPECT_EQ(first.out, study.out);
   EXPECT_EQ(second.out, study.out);

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "absl/strings/str_split.h"
+#include "client/cli/guide.h"
 #include "tests/client/programs.h"
 
 namespace phrenic::client {
@@ -86,6 +87,18 @@ TEST(Layers, NoUnitIncludesItselfThroughOthers) {
     done.insert(unit);
   };
   for (const auto& [unit, unused] : includes) visit(unit);
+}
+
+TEST(ReadmeOfTheClient, HasTheExitCodesOfTheHelp) {
+  std::map<std::string, std::string> rows, known;
+  const std::regex row(R"(^\| (\d+) \| (.*) \|$)");
+  std::smatch cells;
+  for (const std::string& line :
+       std::vector<std::string>(absl::StrSplit(ReadAll(std::string(PHRENIC_SOURCE_DIR) + "/client/README.md"), '\n'))) {
+    if (std::regex_match(line, cells, row)) rows[cells[1]] = cells[2];
+  }
+  for (const NamedText& code : ExitCodes()) known[code.name] = code.meaning;
+  EXPECT_EQ(rows, known);
 }
 
 }  // namespace

@@ -248,6 +248,7 @@ TEST(Run, InvalidArgumentsHaveTheRightExitCode) {
       {{"run", "cube-springs", "-o", "yaml"}, 2, "--output"},
       {{"run"}, 2, "SCENE"},
       {{"dance"}, 2, ""},
+      {{"lern"}, 2, "did you mean --help?"},
       {{}, 2, "Usage\n  phrenic COMMAND"},
   };
   for (const BadRun& line : lines) {

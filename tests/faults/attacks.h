@@ -48,6 +48,9 @@ Outcome FoldedRequests(const Victim& victim, int times);
 Outcome CompileBombs(const Victim& victim, int times);
 Outcome SlowReaders(const Victim& victim, int times);
 Outcome GreedyAccount(const Victim& victim, int times);
+// Calls that compute (work_attacks.cc).
+Outcome Fits(const Victim& victim, int times);
+Outcome Tissue(const Victim& victim, int times);
 // What belongs to another account (theft_attacks.cc).
 Outcome UploadTheft(const Victim& victim, int times);
 Outcome StudyFlood(const Victim& victim, int times);
@@ -64,6 +67,8 @@ inline constexpr Attack kAttacks[] = {
     {"reflection", "streams of reflection, left open", 130, "", false, &Reflection},
     {"physiology", "`CheckPhysiology` on one connection", 135, kNoRateLimit, false, &Physiology},
     {"batches", "`RunBatch` of 1,000 hours on one connection", 135, kNoRateLimit, false, &Batches},
+    {"fits", "`FitMotion` with 20,000 landmarks, 8 at a time", 80, kNoRateLimit, false, &Fits},
+    {"tissue", "`GetTissue` and `ReadTissue`, also of another account", 800, kNoRateLimit, false, &Tissue},
     {"folded", "requests of 16 MB that unfold to gigabytes", 60, kNoRateLimit, false, &FoldedRequests},
     {"resets", "streams opened and reset (HTTP/2 rapid reset)", 300'000, "", true, &RapidResets},
     {"unfinished", "messages of 16 MB without their end", 200, "", true, &UnfinishedMessages},

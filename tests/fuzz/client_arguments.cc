@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "client/campaign/worker.h"
+#include "client/campaign/runs.h"
 #include "client/cli/scene_argument.h"
 #include "client/cli/study_inputs.h"
 #include "client/print/comparison.h"

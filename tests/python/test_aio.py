@@ -1,6 +1,8 @@
 """The async client gives what the blocking one gives."""
 
 import asyncio
+import inspect
+import itertools
 import tempfile
 import threading
 import unittest
@@ -10,7 +12,7 @@ from unittest import mock
 import phrenic
 from phrenic.call import Call, one
 from phrenic.v1 import session_pb2, study_pb2
-from support import FakeServer, SessionTest
+from support import FakeServer, Relay, SessionTest
 
 
 class AioTest(SessionTest, unittest.IsolatedAsyncioTestCase):
@@ -32,6 +34,63 @@ class AioTest(SessionTest, unittest.IsolatedAsyncioTestCase):
                 await session.export(path)
                 self.assertTrue(path.exists())
 
+    def test_the_twin_has_every_name_and_argument(self):
+        for blocking, twin in (
+            (phrenic.Session, phrenic.aio.Session),
+            (phrenic.Studies, phrenic.aio.Studies),
+            (phrenic.Server, phrenic.aio.Server),
+            (phrenic, phrenic.aio),
+        ):
+            names = [n for n in vars(blocking) if not n.startswith("_")] if isinstance(blocking, type) else phrenic.__all__
+            for name in names:
+                ours = getattr(blocking, name)
+                if blocking is phrenic and (isinstance(ours, type) or not callable(ours) or name in ("local", "default_server")):
+                    continue  # results and errors are the same; a server in this process's care is phrenic.local()
+                theirs = getattr(twin, name, None)
+                self.assertIsNotNone(theirs, f"{twin.__name__} has no {name}")
+                if not callable(ours):
+                    continue
+                taken = inspect.signature(theirs).parameters
+                for argument in inspect.signature(ours).parameters:
+                    self.assertTrue(argument in taken or "options" in taken, f"{twin.__name__}.{name}({argument}=...)")
+
+    async def test_a_batch_has_the_bits_of_the_blocking_one(self):
+        forces = [{"breath_force": 0.05 * i} for i in range(300)]
+        expected = {run.index: run.state_hash for run in phrenic.batch("cube-springs", forces, seconds=0.1)}
+        runs = [run async for run in phrenic.aio.batch("cube-springs", forces, seconds=0.1, threads=2)]
+        self.assertEqual({run.index: run.state_hash for run in runs}, expected)
+        relay = Relay(phrenic.default_server().address)
+        self.addCleanup(relay.stop)
+        async with phrenic.aio.connect(relay.address) as server:
+            seen = []
+            async for run in phrenic.aio.batch("pressure-lungs", forces[:20], seconds=1, fps=1, server=server):
+                seen.append(run.index)
+                if len(seen) == 3:
+                    relay.cut()
+            self.assertEqual(sorted(seen), list(range(20)), "a run came twice or not at all")
+            with self.assertRaisesRegex(phrenic.errors.InvalidArgument, r"runs\[299\]"):
+                wrong = [*forces[:299], {"breath_force": -1}]
+                _ = [run async for run in phrenic.aio.batch("cube-springs", wrong, seconds=0.01, server=server)]
+            left = phrenic.aio.batch("cube-springs", itertools.repeat({}), seconds=60, fps=0.1, server=server)
+            await left.__anext__()
+            await left.aclose()
+
+    async def test_frames_ahead_have_the_same_bits(self):
+        async with phrenic.aio.Session("cube-springs") as session, await session.fork() as other:
+            plain = [frame.state_hash async for frame in session.play(0.1, fps=50)]
+            ahead = [frame.state_hash async for frame in other.play(0.1, fps=50, ahead=2)]
+            self.assertEqual(plain, ahead)
+
+    async def test_a_server_says_what_it_is(self):
+        blocking = phrenic.default_server()
+        async with phrenic.aio.connect(blocking.address) as server:
+            self.assertEqual((server.address, server.version), (blocking.address, blocking.version))
+            async with phrenic.aio.Session("cube-springs", server=server) as session:
+                self.assertIn(session.id, await server.sessions())
+                self.assertEqual(server.viewer(session), blocking.viewer(session))
+            described = await server.describe("cube-springs")
+            self.assertEqual(described.report.stable_step, blocking.describe("cube-springs").report.stable_step)
+
     async def test_sessions_run_side_by_side(self):
         async def run(force):
             async with phrenic.aio.Session("cube-springs", set={"breath_force": force}) as session:
@@ -49,7 +108,7 @@ class AioTest(SessionTest, unittest.IsolatedAsyncioTestCase):
             self.assertIn("thorax", (await server.scenes())["name"])
             async with phrenic.aio.Session("cube-springs", server=server) as session:
                 begun = asyncio.Event()
-                work = session.study("error", lambda *_: begun.set(), seconds=60, levels=8)
+                work = session.study.error(lambda *_: begun.set(), seconds=60, levels=8)
                 study = asyncio.create_task(work)
                 await asyncio.wait_for(begun.wait(), 60)
                 self.assertEqual([each.scene for each in await self.studies(server)], ["cube-springs"])

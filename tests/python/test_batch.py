@@ -22,6 +22,14 @@ class BatchTest(SessionTest):
         self.assertEqual(self.hashes(3), expected)
         self.assertEqual(len(set(expected.values())), len(FORCES))
 
+    def test_a_summary_is_the_range_of_the_samples(self):
+        (run,) = phrenic.batch("pressure-lungs", [{}], seconds=0.5, fps=1000)
+        (short,) = phrenic.batch("pressure-lungs", [{}], seconds=0.5, fps=1000, summary=True)
+        self.assertEqual((short.state_hash, len(short.times)), (run.state_hash, 0))
+        for name, values in run.measures.items():
+            self.assertEqual(short.summary.last[name], values[-1])
+            self.assertEqual((short.summary.least[name], short.summary.greatest[name]), (values.min(), values.max()))
+
     def relayed(self, retries):
         """A connection by a relay, and the `finished` of each request that goes over it."""
         relay = Relay(phrenic.default_server().address)

@@ -1,6 +1,8 @@
 """Compressed frames have the bits that the server's and the viewer's decoders give, and keep their bound."""
 
 import json
+import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -126,6 +128,14 @@ class AioWatchTest(unittest.IsolatedAsyncioTestCase):
 
 
 class WheelTest(unittest.TestCase):
+    @unittest.skipUnless(shutil.which("readelf"), "there is no readelf: apt install binutils")
+    def test_the_decoder_needs_only_what_every_linux_has(self):
+        done = subprocess.run(["readelf", "--dynamic", codec.LIBRARY], capture_output=True, text=True, check=True)
+        needed = set(re.findall(r"\(NEEDED\).*\[(.+)\]", done.stdout))
+        self.assertTrue(needed)
+        base = {"libc.so.6", "libm.so.6", "libstdc++.so.6", "libgcc_s.so.1"}
+        self.assertLessEqual({name for name in needed if not name.startswith("ld-linux")}, base)
+
     def test_the_wheel_has_the_decoder_and_the_tag_of_its_platform(self):
         package = Path(phrenic.__file__).parents[2]
         if not (package / "pyproject.toml").exists():

@@ -34,6 +34,10 @@ class ExamplesTest(unittest.TestCase):
             self.assertIn("error_rms_mm", out)
             self.assertTrue(Path(folder, "error.html").exists())
 
+    def test_a_batch_has_the_bits_of_a_loop(self):
+        lines = run("batch_speed.py", "--scene", "cube-springs", "--runs", "6", "--seconds", "0.2").splitlines()
+        self.assertEqual([line.split()[0] for line in lines[1:]], ["loop", "batch,", "batch,"])
+
     def test_a_motion_as_an_array(self):
         with tempfile.TemporaryDirectory() as folder:
             run("motion.py", "--scene", "pressure-lungs", "--seconds", "0.5", "--fps", "10", folder=folder)

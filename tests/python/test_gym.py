@@ -1,12 +1,18 @@
 """Every environment keeps the contract that Gymnasium's checker checks: spaces, tuples, seeds, the end of an episode."""
 
+import importlib.util
+import pkgutil
+import re
+import sys
 import unittest
+from unittest import mock
 
 import numpy as np
 
 import phrenic
 from phrenic.gym import FollowVolume, KeepBreathing, VentilateCopd
 from phrenic.vector import FollowVolumeVector, KeepBreathingVector, VentilateCopdVector
+from support import REPOSITORY
 
 
 class GymTest(unittest.TestCase):
@@ -64,6 +70,35 @@ class GymTest(unittest.TestCase):
         for action in ([-1], [4], [np.nan], [1, 1], 1.0):
             with self.assertRaises(phrenic.errors.InvalidArgument):
                 self.env.step(np.array(action, np.float32))
+
+
+class RegistrationTest(unittest.TestCase):
+    def test_each_environment_is_registered_with_its_vector(self):
+        gymnasium = mock.Mock()
+        with mock.patch.dict(sys.modules, {"gymnasium": gymnasium}):
+            phrenic.gym.register()
+        made = {call.kwargs["id"]: call.kwargs for call in gymnasium.register.call_args_list}
+        self.assertEqual(set(made), {f"phrenic/{name}-v0" for name in ("VentilateCopd", "FollowVolume", "KeepBreathing")})
+        for each in made.values():
+            single, many = (pkgutil.resolve_name(each[key]) for key in ("entry_point", "vector_entry_point"))
+            self.assertIs(single.task, many.task)
+
+    def test_pip_tells_gymnasium_of_them(self):
+        text = (REPOSITORY / "client" / "python" / "pyproject.toml").read_text()
+        (point,) = re.findall(r'^\[project.entry-points."gymnasium.envs"\]\nphrenic = "(.*)"$', text, re.MULTILINE)
+        self.assertIs(pkgutil.resolve_name(point), phrenic.gym.register)
+
+    @unittest.skipIf(importlib.util.find_spec("gymnasium") is None, "there is no gymnasium: pip install gymnasium")
+    def test_gymnasiums_own_checker_finds_nothing(self):
+        import gymnasium
+        from gymnasium.utils.env_checker import check_env
+
+        phrenic.gym.register()
+        for name in phrenic.gym.ENVIRONMENTS:
+            with gymnasium.make(f"phrenic/{name}-v0", resolution_mm=12, seconds=0.3) as env:
+                check_env(env.unwrapped, skip_render_check=True)
+            with gymnasium.make_vec(f"phrenic/{name}-v0", num_envs=2, resolution_mm=12, seconds=0.3) as envs:
+                self.assertIn(envs.reset(seed=1)[0], envs.observation_space)
 
 
 class TasksTest(unittest.TestCase):

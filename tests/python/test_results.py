@@ -25,6 +25,27 @@ ROWS = [
 ]
 
 
+class ResultTest(unittest.TestCase):
+    physiology = jobs.Physiology(
+        phrenic.Table([{"breath": "quiet", "what": "flow", "verdict": "inside"}]),
+        {"quiet": {"flow": (np.arange(500.0), np.arange(500.0) ** 2)}},
+    )
+    study = jobs.Study(phrenic.Table([{"order": 1.0}]), {}, "", 0.1, "<html>" + 10_000 * " ")
+
+    def test_what_a_prompt_shows_is_short(self):
+        for result in (self.physiology, self.study):
+            self.assertLess(len(repr(result)), 500)
+            self.assertIn("<table", result._repr_html_())
+
+    @unittest.skipIf(importlib.util.find_spec("pandas") is None, "there is no pandas: apt install python3-pandas")
+    def test_results_are_dataframes(self):
+        self.assertEqual(list(self.study.to_pandas()["order"]), [1.0])
+        self.assertEqual(list(self.physiology.to_pandas().columns), ["breath", "what", "verdict"])
+        curves = self.physiology.curves_to_pandas()
+        self.assertEqual(list(curves.columns), ["breath", "what", "time_s", "value"])
+        self.assertEqual((len(curves), curves["value"].max()), (500, 499.0**2))
+
+
 class TableTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()

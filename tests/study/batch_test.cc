@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <set>
 
 #include "server/stream/codecs/wire.h"
@@ -86,6 +87,32 @@ TEST(Batch, SamplesMeasuresAtTheNearestSteps) {
   std::memcpy(x.data(), result->state().positions().data(), sizeof(double) * 9);
   EXPECT_EQ(result->measures(3), -x.row(2).minCoeff());
   EXPECT_EQ(result->time_step(), 0.002);
+}
+
+TEST(Batch, SummarisesWhatSamplesSayAndEndsWithTheStepThatReachesTheTime) {
+  v1::RunBatchRequest request = Runs(1);
+  request.set_seconds(0.5);
+  request.set_frames_per_second(500);  // every step
+  const auto sampled = Batch::Make(request, kCompileRow, kGoOn)->Run(0, kGoOn);
+  request.set_summary(true);
+  request.set_seconds(0.4999);
+  const auto batch = Batch::Make(request, kCompileRow, kGoOn);
+  ASSERT_TRUE(batch.ok()) << batch.status();
+  const auto result = batch->Run(0, kGoOn);
+  ASSERT_TRUE(sampled.ok() && result.ok());
+  EXPECT_EQ(result->state_hash(), sampled->state_hash());
+  EXPECT_EQ(result->times_size() + result->measures_size(), 0);
+  const v1::BatchSummary& summary = result->summary();
+  const auto [least, greatest] = std::minmax_element(sampled->measures().begin(), sampled->measures().end());
+  EXPECT_EQ(summary.steps(), 250);
+  EXPECT_EQ(summary.simulated_seconds(), sampled->times(249));
+  EXPECT_EQ(summary.least(0), *least);
+  EXPECT_EQ(summary.greatest(0), *greatest);
+  EXPECT_EQ(summary.last(0), sampled->measures(249));
+  EXPECT_FALSE(summary.has_constraint_residual());
+  request.set_seconds(3600);  // numbers of a summary do not grow with the run
+  request.set_frames_per_second(10000);
+  EXPECT_EQ(BatchFault(request), "");
 }
 
 TEST(Batch, GoesOnFromAStateAsIfItHadNotStopped) {

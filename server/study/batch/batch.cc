@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/mechanics/compile/presets.h"
-#include "server/mechanics/measures/readings.h"
 #include "server/schema/schema.h"
 #include "server/schema/thread_cpu.h"
 #include "server/stream/state_arrays.h"
+#include "server/study/batch/run_pool.h"
+#include "server/study/batch/run_reader.h"
 #include "server/study/batch/start_state.h"
 #include "server/study/subject.h"
 #include "server/study/watched_run.h"
@@ -24,19 +24,6 @@ absl::Status InField(const std::string& path, const absl::Status& status) {
   return {status.code(), absl::StrCat(path, status.message())};
 }
 
-// Returns the steps at which samples are taken, from the start: those whose end is nearest to each sample's time, each
-// once, the last one at the end of the run.
-std::vector<std::int64_t> SampledTicks(double seconds, double samples_per_second, double dt) {
-  std::vector<std::int64_t> ticks;
-  const std::int64_t samples = std::max<std::int64_t>(1, std::llround(seconds * samples_per_second));
-  for (std::int64_t i = 1; i <= samples; ++i) {
-    const double steps = static_cast<double>(i) / (samples_per_second * dt);
-    const std::int64_t tick = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::nearbyint(steps)));
-    if (ticks.empty() || tick > ticks.back()) ticks.push_back(tick);
-  }
-  return ticks;
-}
-
 // Sets the numbers that the request leaves out. Parameters stay: those not set are the scene's.
 void SetDefaults(v1::RunBatchRequest& request) {
   v1::RunBatchRequest defaults;
@@ -46,39 +33,6 @@ void SetDefaults(v1::RunBatchRequest& request) {
   if (!request.has_threads()) request.set_threads(defaults.threads());
   if (!request.has_most_seconds_a_run()) request.set_most_seconds_a_run(defaults.most_seconds_a_run());
 }
-
-// Takes the samples of one run.
-class Sampler {
- public:
-  Sampler(const Subject& subject, std::vector<std::int64_t> ticks, std::int64_t start, v1::BatchResult& result)
-      : subject_(subject),
-        work_(subject.model->MakeWorkspace()),
-        ticks_(std::move(ticks)),
-        start_(start),
-        result_(result) {}
-
-  void Look(const State& state) {
-    if (next_ == ticks_.size() || state.tick - start_ < ticks_[next_]) return;
-    ++next_;
-    result_.add_times(state.time);
-    const EvalContext at = MakeEvalContext(*subject_.model, subject_.parameters, state, work_.scratch);
-    for (const v1::MeasureReading& reading : ReadMeasures(*subject_.model, at)) result_.add_measures(reading.value());
-    last_ = state;
-  }
-
-  // Returns the state of the last sample, or `otherwise` if there was none.
-  const State& LastOr(const State& otherwise) const { return next_ > 0 ? last_ : otherwise; }
-  double Seconds() const { return static_cast<double>(ticks_.back()) * subject_.parameters.time_step(); }
-
- private:
-  const Subject& subject_;
-  Workspace work_;
-  std::vector<std::int64_t> ticks_;
-  std::int64_t start_;
-  v1::BatchResult& result_;
-  size_t next_ = 0;
-  State last_;
-};
 
 // Returns why a run ended early; empty if it did not.
 std::string ProblemOf(const WatchedRun& run, double most_cpu) {
@@ -126,10 +80,14 @@ absl::Status Batch::SetWanted() {
   return absl::OkStatus();
 }
 
-double Batch::CountSamples() const { return request_.seconds() * request_.frames_per_second(); }
+double Batch::CountNumbers() const {
+  constexpr int kRange = 3;  // numbers of a measure in a summary
+  const double samples = request_.summary() ? kRange : request_.seconds() * request_.frames_per_second();
+  return samples * static_cast<double>(model_->measures.size() + 1);
+}
 
 absl::Status Batch::Check(const std::function<bool()>& cancelled) const {
-  const double numbers = CountSamples() * static_cast<double>(model_->measures.size() + 1);
+  const double numbers = CountNumbers();
   if (numbers > kMostSampledNumbers) {
     return absl::InvalidArgumentError(
         absl::StrFormat("frames_per_second: a run of %g s gives %.3g numbers, more than %.3g: lower it, or the seconds",
@@ -171,11 +129,7 @@ absl::StatusOr<State> Batch::StartOf(int run, const v1::Parameters& parameters) 
   return StartState(*model_, parameters, request_.runs(run).start(), absl::StrCat("runs[", run, "].start"));
 }
 
-int Batch::threads() const {
-  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  const int wanted = request_.threads() > 0 ? request_.threads() : cores;
-  return std::min({wanted, cores, static_cast<int>(wanted_.size())});
-}
+int Batch::threads() const { return ThreadsFor(request_.threads(), wanted_.size()); }
 
 v1::BatchHeader Batch::Header() const {
   v1::BatchHeader header;
@@ -192,8 +146,8 @@ v1::BatchHeader Batch::Header() const {
 }
 
 std::size_t Batch::ResultBytes() const {
-  const double samples = sizeof(double) * CountSamples() * static_cast<double>(model_->measures.size() + 1);
-  return static_cast<std::size_t>(samples) + stream::StateBytes(*model_, layout_, request_.read());
+  return static_cast<std::size_t>(sizeof(double) * CountNumbers()) +
+         stream::StateBytes(*model_, layout_, request_.read());
 }
 
 absl::StatusOr<v1::BatchResult> Batch::Run(int run, const std::function<bool()>& cancelled) const {
@@ -205,13 +159,13 @@ absl::StatusOr<v1::BatchResult> Batch::Run(int run, const std::function<bool()>&
   v1::BatchResult result;
   result.set_run(run);
   result.set_time_step(dt);
-  Sampler sampler(*subject, SampledTicks(request_.seconds(), request_.frames_per_second(), dt), start->tick, result);
+  const std::unique_ptr<RunReader> reader = RunReader::Make(request_, *subject, *start, result);
   const auto watched = Watch(
-      *subject, *start, sampler.Seconds(), dt, request_.most_seconds_a_run(),
-      [&](double, std::string_view) { return !cancelled(); }, [&](const State& state) { sampler.Look(state); });
+      *subject, *start, static_cast<double>(reader->steps()) * dt, dt, request_.most_seconds_a_run(),
+      [&](double, std::string_view) { return !cancelled(); }, [&](const State& state) { reader->Look(state); });
   if (!watched.ok()) return watched.status();
   result.set_problem(ProblemOf(*watched, request_.most_seconds_a_run()));
-  const State& last = sampler.LastOr(*start);
+  const State& last = reader->LastOr(*start);
   result.set_state_hash(absl::StrFormat("%016x", StateHash(last)));
   result.set_cpu_seconds(ThreadCpuSeconds() - began);
   if (request_.read().empty()) return result;

@@ -42,7 +42,8 @@ class Batch {
   // Returns the model with the parameters of a run, every field set, and its time step.
   absl::StatusOr<Subject> SubjectOf(int run) const;
   absl::StatusOr<State> StartOf(int run, const v1::Parameters& parameters) const;
-  double CountSamples() const;
+  // Returns how many numbers a run's result has, without its state.
+  double CountNumbers() const;
 
   v1::RunBatchRequest request_;
   std::vector<int> wanted_;

@@ -7,12 +7,9 @@
 
 namespace phrenic::study {
 
-// Runs all wanted ones on batch.threads() threads of low priority, and calls `take` on the calling thread with each
-// result as it ends. While `take` falls behind, runs wait: no more results than two a thread are in memory. CANCELLED
-// if `take` returns false, or `cancelled`, which is asked often and on several threads, returns true; the first other
-// error of a run.
+// Runs all wanted ones by RunOnThreads, on batch.threads() threads of low priority. Its errors.
 absl::Status RunAll(const Batch& batch, absl::FunctionRef<bool(v1::BatchResult)> take,
-                    const std::function<bool()>& cancelled);
+                    absl::FunctionRef<bool()> cancelled);
 
 }  // namespace phrenic::study
 

@@ -119,12 +119,17 @@ class Steps(Requests):
         self._answers.cancel()
 
 
+def frames_ahead_of(ticks: Sequence[int], ahead: int) -> deque[int]:
+    """Returns the steps of each frame that is left. InvalidArgument if `ahead` is negative."""
+    if ahead < 0:
+        raise InvalidArgument(f"ahead: {ahead} is below 0")
+    return deque(ticks)
+
+
 def frames_ahead(session: Any, channel: "Channel", ticks: Sequence[int], read: Sequence[str], ahead: int) -> Iterator[Frame]:
     """Yields the state after each number of ticks; the server is at most `ahead` of them further. InvalidArgument if
     `ahead` is negative."""
-    if ahead < 0:
-        raise InvalidArgument(f"ahead: {ahead} is below 0")
-    left = deque(ticks)
+    left = frames_ahead_of(ticks, ahead)
     with Steps(session, channel, read) as steps:
         while left or steps.pending:
             while left and steps.pending <= ahead:

@@ -11,23 +11,44 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import asynccontextmanager
 from pathlib import Path
-from typing import Any, AsyncIterator, Mapping, Optional, Sequence, Union
+from typing import Any, AsyncGenerator, AsyncIterator, Container, Iterable, Mapping, Optional, Sequence, Union
 
 import grpc
 import grpc.aio
 
 from . import jobs
-from .advance import AsyncSteps
+from .advance import AsyncSteps, frames_ahead_of
 from .call import Call, Operation, T, delay_before_repeat, one
 from .connection import Channel, Target, Tls, target_of
-from .errors import FailedPrecondition, error_of
+from .errors import Error, FailedPrecondition, error_of
 from .fits import Fit, Landmarks, fitted
-from .frame import Frame
-from .operations import EVERYTHING, Scene, SessionOperations, attach, create, source_of
-from .server import default_server
+from .frame import Frame, State
+from .operations import (
+    EVERYTHING,
+    Scene,
+    SessionOperations,
+    attach,
+    create,
+    describe,
+    scenes,
+    session_ids,
+    source_of,
+)
+from .runs import Run, parts, request_of
+from .server import ServerFacts, default_server
 from .table import Table
 from .v1 import server_pb2, session_pb2, state_pb2
+
+
+@asynccontextmanager
+async def _closing(values: AsyncGenerator[T, None]) -> AsyncIterator[AsyncGenerator[T, None]]:
+    """contextlib.aclosing, which Python 3.9 lacks."""
+    try:
+        yield values
+    finally:
+        await values.aclose()
 
 
 class Connection(Channel):
@@ -77,6 +98,17 @@ class Connection(Channel):
         finally:  # a receiver that raises ends the call
             answer.cancel()
         return None
+
+    async def stream(self, call: Call) -> AsyncGenerator[Any, None]:
+        """As phrenic.Connection.stream."""
+        messages = self.open(call, call.deadline)
+        try:
+            async for message in messages:
+                yield message
+        except grpc.RpcError as failed:
+            raise error_of(failed) from None
+        finally:
+            messages.cancel()
 
 
 class Session(SessionOperations):
@@ -153,8 +185,18 @@ class Session(SessionOperations):
         """As phrenic.Session.advance: `async with s.advance() as steps: await steps.step()`."""
         return AsyncSteps(self, read)
 
-    async def play(self, seconds: float, fps: float = 60, read: Sequence[str] = ("bodies",)) -> AsyncIterator[Frame]:
+    async def play(
+        self, seconds: float, fps: float = 60, read: Sequence[str] = ("bodies",), ahead: int = 0
+    ) -> AsyncIterator[Frame]:
         """As phrenic.Session.play."""
+        if ahead != 0:
+            left = frames_ahead_of(self._frame_ticks(seconds, fps), ahead)
+            async with self.advance(read) as steps:
+                while left or steps.pending:
+                    while left and steps.pending <= ahead:
+                        await steps.send(left.popleft())
+                    yield await steps.receive()
+            return
         for time in self._frame_times(seconds, fps):
             yield await self.step(self.ticks_until(time), read)
 
@@ -213,28 +255,29 @@ class Session(SessionOperations):
     async def watch(self, max_fps: float = 60, max_error_mm: Optional[float] = None) -> AsyncIterator[Frame]:
         """As phrenic.Session.watch."""
         await self._do(self._describe([state_pb2.STATE_PART_BODIES]))
-        events = self._begun().open(self._watch_call(max_fps, max_error_mm))
-        try:
+        async with _closing(self._begun().stream(self._watch_call(max_fps, max_error_mm))) as events:
             async for event in events:
                 frame = self._noted(event)
                 if frame is not None:
                     yield frame
-        except grpc.RpcError as failed:
-            raise error_of(failed) from None
-        finally:
-            events.cancel()
 
     async def export(
-        self, path: Union[str, Path], seconds: float = 0, fps: Optional[float] = None, **options: Any
+        self,
+        path: Union[str, Path],
+        seconds: float = 0,
+        fps: Optional[float] = None,
+        bodies: Sequence[str] = (),
+        progress: jobs.Progress = None,
+        **options: Any,
     ) -> dict[str, Any]:
         """As phrenic.Session.export."""
-        fields = {"seconds": seconds, "frames_per_second": fps, **options}
-        return await self._do(jobs.export(self.id, path, fields, None))
+        fields = {"seconds": seconds, "frames_per_second": fps, "bodies": bodies, **options}
+        return await self._do(jobs.export(self.id, path, fields, progress))
 
-    async def study(self, kind: str, progress: jobs.Progress = None, **options: Any) -> jobs.Study:
-        """As phrenic.Session.study: study("error", levels=4)."""
-        operation = jobs.study(kind, self._source, self.status.parameters, options, progress)
-        return await self._do(operation)
+    @property
+    def study(self) -> Studies:
+        """As phrenic.Session.study: `await s.study.error(levels=4)`."""
+        return Studies(self)
 
     async def physiology(self, presets: Sequence[str] = (), progress: jobs.Progress = None) -> jobs.Physiology:
         """As phrenic.Session.physiology."""
@@ -250,8 +293,37 @@ class Session(SessionOperations):
         return await self._do(operation)
 
 
-class Server:
-    """phrenic.Server for asyncio: `async with connect(address) as server`."""
+class Studies:
+    """phrenic.Studies for asyncio."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+
+    async def error(self, progress: jobs.Progress = None, **options: Any) -> jobs.Study:
+        """As phrenic.Studies.error."""
+        return await self._run("error", options, progress)
+
+    async def stability(self, progress: jobs.Progress = None, **options: Any) -> jobs.Study:
+        """As phrenic.Studies.stability."""
+        return await self._run("stability", options, progress)
+
+    async def cost(self, progress: jobs.Progress = None, **options: Any) -> jobs.Study:
+        """As phrenic.Studies.cost."""
+        return await self._run("cost", options, progress)
+
+    async def streaming(self, progress: jobs.Progress = None, **options: Any) -> jobs.Study:
+        """As phrenic.Studies.streaming."""
+        return await self._run("streaming", options, progress)
+
+    async def _run(self, kind: str, options: Mapping[str, Any], progress: jobs.Progress) -> jobs.Study:
+        session = self._session
+        return await session._do(jobs.study(kind, session._source, session.status.parameters, options, progress))
+
+
+class Server(ServerFacts):
+    """phrenic.Server for asyncio: `async with connect(address) as server`. `about` is empty before."""
+
+    connection: Connection
 
     def __init__(self, target: Target) -> None:
         self.connection = Connection(target)
@@ -263,12 +335,23 @@ class Server:
         return self
 
     async def __aexit__(self, *_: Any) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        """Ends the connection."""
         await self.connection.close()
 
     async def scenes(self) -> Table:
-        """The catalogue."""
-        call = Call("SceneService.ListScenes", session_pb2.ListScenesRequest())
-        return Table.of((await self.connection.run(one(call))).scenes)
+        """As phrenic.Server.scenes."""
+        return await self.connection.run(scenes())
+
+    async def describe(self, scene: Scene, resolution_mm: Optional[float] = None) -> session_pb2.DescribeSceneResponse:
+        """As phrenic.Server.describe."""
+        return await self.connection.run(describe(scene, resolution_mm))
+
+    async def sessions(self) -> list[str]:
+        """As phrenic.Server.sessions."""
+        return await self.connection.run(session_ids())
 
     async def attach(self, id: str) -> Session:
         """As phrenic.Server.attach."""
@@ -285,3 +368,63 @@ def connect(
 ) -> Server:
     """As phrenic.connect. phrenic.local().address is a server to connect to."""
     return Server(target_of(address, token, tls, timeout, retries))
+
+
+@asynccontextmanager
+async def _connected(server: Optional[Server]) -> AsyncIterator[Connection]:
+    """The server's connection, or one to the default server, which is closed at the end."""
+    if server is not None:
+        yield server.connection
+        return
+    connection = Connection((await asyncio.to_thread(default_server)).connection.target)
+    try:
+        yield connection
+    finally:
+        await connection.close()
+
+
+async def batch(
+    scene: Scene,
+    parameters: Iterable[Mapping[str, Any]],
+    *,
+    seconds: float,
+    fps: float = 20,
+    preset: str = "",
+    resolution_mm: Optional[float] = None,
+    start: Union[Frame, State, None] = None,
+    starts: Optional[Iterable[State]] = None,
+    read: Sequence[str] = (),
+    summary: bool = False,
+    threads: Optional[int] = None,
+    finished: Container[int] = (),
+    server: Optional[Server] = None,
+) -> AsyncIterator[Run]:
+    """As phrenic.batch: `async for run in batch(...)`. A loop that breaks ends the runs in progress when the iterator is
+    closed: `async with contextlib.aclosing(batch(...)) as runs`."""
+    request = request_of(scene, seconds, fps, preset, resolution_mm, read, summary, threads)
+    async with _connected(server) as connection:
+        for part in parts(request, parameters, start, starts, finished, connection.target.retries):
+            while not part.ended:
+                try:
+                    async with _closing(connection.stream(part.call)) as messages:
+                        async for message in messages:
+                            for run in part.runs_of(message):
+                                yield run
+                    part.ended = True
+                except Error as error:
+                    delay = part.delay_after(error)
+                    await asyncio.sleep(delay)
+
+
+async def fit(
+    landmarks: Optional[Landmarks] = None,
+    scene: Scene = "thorax",
+    *,
+    resolution_mm: Optional[float] = None,
+    progress: jobs.Progress = None,
+    server: Optional[Server] = None,
+    **options: Any,
+) -> Fit:
+    """As phrenic.fit, with its options."""
+    async with _connected(server) as connection:
+        return await connection.run(fitted(source_of(scene, resolution_mm), landmarks, options, progress))

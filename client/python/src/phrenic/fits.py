@@ -35,7 +35,7 @@ end inhale."""
 COLUMNS = "exhale_x,exhale_y,exhale_z,inhale_x,inhale_y,inhale_z"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Fit:
     """A fitted breath, and how far off it is on the half of the landmarks that was not fitted."""
 
@@ -65,6 +65,13 @@ class Fit:
     """What follows from them: tidal volume, descents, abdominal share, rate."""
     kinds: Table
     """How well each kind of data is met: data, error, rms_still, rms_before, rms_after, rms_held_out."""
+
+    def __repr__(self) -> str:
+        return f"<Fit of {len(self.parameters) or len(self.numbers)} numbers, {self.held_out_mm:.2f} mm off on the unseen half>"
+
+    def to_pandas(self) -> Any:
+        """Returns the fitted numbers as a pandas.DataFrame: `parameters`, or `numbers` of several kinds of data."""
+        return (self.parameters if len(self.parameters) else self.numbers).to_pandas()
 
     @property
     def held_out_mm(self) -> float:

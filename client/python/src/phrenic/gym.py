@@ -1,6 +1,6 @@
 """Environments for reinforcement learning, after the interface of Gymnasium 1: `reset(seed=, options=)` returns
 (observation, info), `step(action)` returns (observation, reward, terminated, truncated, info). Gymnasium is used where it
-is installed (`gymnasium.make("phrenic/VentilateCopd-v0")` after register()), and not needed. vector.py has many of them
+is installed (`gymnasium.make("phrenic/VentilateCopd-v0")`), and not needed. vector.py has many of them
 side by side.
 
 >>> env = VentilateCopd(resolution_mm=12, seconds=0.2)
@@ -148,7 +148,7 @@ ENVIRONMENTS = {"VentilateCopd": VentilateCopd, "FollowVolume": FollowVolume, "K
 
 def register() -> None:
     """Registers phrenic/VentilateCopd-v0, FollowVolume-v0 and KeepBreathing-v0 with Gymnasium, each with its vector
-    environment. Requires: gymnasium is installed."""
+    environment. Gymnasium calls it by itself if pip has installed this package. Requires: gymnasium is installed."""
     import gymnasium
 
     for name in ENVIRONMENTS:

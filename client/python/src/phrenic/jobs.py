@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO, Callable, Mapping, Optional, Union
 
@@ -121,8 +121,16 @@ class Study:
     advice: str
     took: float
     """Wall time [s]."""
-    page: str
+    page: str = field(repr=False)
     """A self-contained HTML page of it; empty where the server's viewer is not built."""
+
+    def to_pandas(self) -> Any:
+        """Returns `rows` as a pandas.DataFrame."""
+        return self.rows.to_pandas()
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the rows."""
+        return self.rows._repr_html_()
 
 
 def study(
@@ -174,8 +182,25 @@ class Physiology:
 
     rows: Table
     """A row a check: breath, what, unit, value, low, high, verdict, note, source."""
-    curves: dict[str, dict[str, tuple[np.ndarray, np.ndarray]]]
+    curves: dict[str, dict[str, tuple[np.ndarray, np.ndarray]]] = field(repr=False)
     """curves[breath][what] is (times [s], values)."""
+
+    def to_pandas(self) -> Any:
+        """Returns `rows` as a pandas.DataFrame."""
+        return self.rows.to_pandas()
+
+    def curves_to_pandas(self) -> Any:
+        """Returns `curves` as a pandas.DataFrame with the columns breath, what, time_s and value, a row a moment."""
+        return Table(
+            {"breath": breath, "what": what, "time_s": float(time), "value": float(value)}
+            for breath, of_breath in self.curves.items()
+            for what, curve in of_breath.items()
+            for time, value in zip(*curve)
+        ).to_pandas()
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the rows."""
+        return self.rows._repr_html_()
 
     @property
     def outside(self) -> Table:
@@ -223,6 +248,14 @@ class Comparison:
     """The whole surfaces, then regions, then times."""
     definition: str
     warnings: list[str]
+
+    def to_pandas(self) -> Any:
+        """Returns `rows` as a pandas.DataFrame."""
+        return self.rows.to_pandas()
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the rows."""
+        return self.rows._repr_html_()
 
     def __getitem__(self, name: str) -> float:
         """Returns a distance of the whole surfaces, such as ["hd95_max"]."""

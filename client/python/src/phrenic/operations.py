@@ -17,6 +17,7 @@ from .codec import Decoder
 from .errors import Aborted, InvalidArgument, NotFound, Unavailable
 from .frame import Frame, Geometry, frame_of, watched_frame
 from .names import enum_number, fill, look_up, row
+from .table import Table
 from .v1 import frames_pb2, parameters_pb2, scene_pb2, session_pb2, state_pb2
 
 Scene = Union[str, Path, scene_pb2.Scene]
@@ -300,6 +301,29 @@ def create(
         session_id=id, source=source_of(scene, resolution_mm), parameters=parameters_of(set), preset=preset
     )
     return (yield Call("SessionService.CreateSession", request, LONG, repeatable=False))
+
+
+def describe(scene: Scene, resolution_mm: Optional[float]) -> Operation[session_pb2.DescribeSceneResponse]:
+    """Compiles a scene."""
+    request = session_pb2.DescribeSceneRequest(source=source_of(scene, resolution_mm))
+    return (yield Call("SceneService.DescribeScene", request, LONG))
+
+
+def scenes() -> Operation[Table]:
+    """Returns the catalogue."""
+    return Table.of((yield Call("SceneService.ListScenes", session_pb2.ListScenesRequest())).scenes)
+
+
+def session_ids() -> Operation[list[str]]:
+    """Returns the ids of the sessions that the caller may see."""
+    ids: list[str] = []
+    request = session_pb2.ListSessionsRequest()
+    while True:
+        page = yield Call("SessionService.ListSessions", request)
+        ids += [session.id for session in page.sessions]
+        if not page.next_page_token:
+            return ids
+        request.page_token = page.next_page_token
 
 
 def attach(id: str) -> Operation[session_pb2.Session]:

@@ -31,6 +31,19 @@ NOTICED = 20.0
 
 
 @dataclass(frozen=True)
+class Summary:
+    """What was seen in a run `fps` times a simulated second, at least 40 times, and at its end; measures in SI units."""
+
+    steps: int
+    simulated_seconds: float
+    last: dict[str, float]
+    least: dict[str, float]
+    greatest: dict[str, float]
+    constraint_residual: Optional[float]
+    """Largest violation of a rigid link or length limit [m]; None if the scene has none."""
+
+
+@dataclass(frozen=True)
 class Run:
     """One run of a batch."""
 
@@ -38,7 +51,7 @@ class Run:
     """Its place among the parameters."""
     parameters: Mapping[str, Any]
     times: np.ndarray
-    """Simulated times of the samples [s]."""
+    """Simulated times of the samples [s]; none of a run with a summary."""
     measures: dict[str, np.ndarray]
     """Each measure at these times, in its SI unit."""
     state_hash: str
@@ -49,6 +62,8 @@ class Run:
     """At the last sample, the parts that `read` names."""
     cpu_seconds: float = 0
     """CPU time of the run."""
+    summary: Optional[Summary] = None
+    """Instead of samples, if it was asked for."""
 
 
 def batch(
@@ -62,6 +77,7 @@ def batch(
     start: Union[Frame, State, None] = None,
     starts: Optional[Iterable[State]] = None,
     read: Sequence[str] = (),
+    summary: bool = False,
     threads: Optional[int] = None,
     finished: Container[int] = (),
     server: Optional[Server] = None,
@@ -72,14 +88,87 @@ def batch(
     are the same, bit for bit, at any number of threads. `start`: a frame of a session of this scene, with "positions",
     "velocities" and "scalars", from which every run goes on; `starts`: a state a run; default: the scene's start. (An
     integrator that remembers the step before, velocity_verlet or bdf2, begins there as after a reset.) `read`: parts of the last state,
-    "positions", "velocities" and "scalars". A loop that breaks ends the runs in progress; `finished`, the indices of the
+    "positions", "velocities" and "scalars". `summary`: instead of samples, the range of each measure, and an end at the first
+    step that reaches `seconds`. A loop that breaks ends the runs in progress; `finished`, the indices of the
     runs that it had, lets another call with the same arguments run the rest. After a lost connection the batch goes on by
     itself with the runs that are missing; Unavailable once `retries` attempts have given none."""
-    host = server or default_server()
-    request = batch_pb2.RunBatchRequest(
+    connection = (server or default_server()).connection
+    request = request_of(scene, seconds, fps, preset, resolution_mm, read, summary, threads)
+    for part in parts(request, parameters, start, starts, finished, connection.target.retries):
+        while not part.ended:
+            try:
+                for message in connection.stream(part.call):
+                    yield from part.runs_of(message)
+                part.ended = True
+            except Error as error:
+                time.sleep(part.delay_after(error))
+
+
+def request_of(
+    scene: Scene,
+    seconds: float,
+    fps: float,
+    preset: str,
+    resolution_mm: Optional[float],
+    read: Sequence[str],
+    summary: bool,
+    threads: Optional[int],
+) -> batch_pb2.RunBatchRequest:
+    """Returns the request without its runs."""
+    return batch_pb2.RunBatchRequest(
         source=source_of(scene, resolution_mm), preset=preset, seconds=seconds, frames_per_second=fps,
-        threads=threads or 0, read=_parts(read),
+        threads=threads or 0, read=_parts(read), summary=summary,
     )  # fmt: skip
+
+
+class Part:
+    """One request of a batch: makes runs of its answers, and asks again for those that a lost connection cost."""
+
+    def __init__(
+        self, request: batch_pb2.RunBatchRequest, begin: int, block: Sequence[Mapping[str, Any]], retries: int
+    ) -> None:
+        self.call = Call("StudyService.RunBatch", request)
+        self.ended = len(request.finished) == len(block)
+        """True once every run was received."""
+        self._request, self._begin, self._block, self._retries = request, begin, block, retries
+        self._header = batch_pb2.BatchHeader()
+        self._attempt, self._lost = 0, -NOTICED
+
+    def runs_of(self, message: batch_pb2.RunBatchResponse) -> Iterator[Run]:
+        """Yields the run that the message has, if it has one."""
+        if message.HasField("header"):
+            self._header = message.header
+            return
+        self._request.finished.append(message.result.run)
+        self._attempt = 0
+        yield _run_of(message.result, self._header, self._begin, self._block, self._request.read)
+
+    def delay_after(self, error: Error) -> float:
+        """Returns how long to wait before the missing runs are asked for [s]. Raises the error if it is final."""
+        delay = delay_before_repeat(self.call, error, self._attempt, self._retries)
+        if isinstance(error, Unavailable):
+            self._lost = time.monotonic()
+            self._attempt += 1
+        elif isinstance(error, ResourceExhausted) and time.monotonic() - self._lost < NOTICED:
+            delay = 0.5  # the lost stream may hold its place still
+        if delay is not None:
+            return delay
+        # The message names a run by its place in this request.
+        error.message = re.sub(r"^runs\[(\d+)\]", lambda m: f"runs[{self._begin + int(m[1])}]", error.message)
+        error.args = (error.message, *error.args[1:])
+        raise error
+
+
+def parts(
+    request: batch_pb2.RunBatchRequest,
+    parameters: Iterable[Mapping[str, Any]],
+    start: Union[Frame, State, None],
+    starts: Optional[Iterable[State]],
+    finished: Container[int],
+    retries: int,
+) -> Iterator[Part]:
+    """Yields the parts of a batch, one after the other; each takes its parameters when it is asked for. They share
+    `request`."""
     if isinstance(parameters, Mapping):
         raise InvalidArgument("parameters: give a list of sets, one a run: [{...}, {...}]")
     values, begin = _with_starts(parameters, start, starts), 0
@@ -100,8 +189,7 @@ def batch(
                 break
         if not block:
             return
-        if len(request.finished) < len(block):
-            yield from _run(host, request, begin, block)
+        yield Part(request, begin, block, retries)
         begin += len(block)
 
 
@@ -140,36 +228,6 @@ def _arrays_of(state: State) -> state_pb2.StateArrays:
     )  # fmt: skip
 
 
-def _run(
-    host: Server, request: batch_pb2.RunBatchRequest, begin: int, block: Sequence[Mapping[str, Any]]
-) -> Iterator[Run]:
-    """Yields the runs of one request that are not finished. After a lost connection it asks for those that are missing."""
-    call, attempt, lost = Call("StudyService.RunBatch", request), 0, -NOTICED
-    while True:
-        header = batch_pb2.BatchHeader()
-        try:
-            for message in host.connection.stream(call):
-                if message.HasField("header"):
-                    header = message.header
-                    continue
-                request.finished.append(message.result.run)
-                attempt = 0
-                yield _run_of(message.result, header, begin, block, request.read)
-            return
-        except Error as error:
-            delay = delay_before_repeat(call, error, attempt, host.connection.target.retries)
-            if isinstance(error, Unavailable):
-                lost = time.monotonic()
-                attempt += 1
-            elif isinstance(error, ResourceExhausted) and time.monotonic() - lost < NOTICED:
-                delay = 0.5  # the lost stream may hold its place still
-            if delay is None:  # the message names a run by its place in this request
-                error.message = re.sub(r"^runs\[(\d+)\]", lambda m: f"runs[{begin + int(m[1])}]", error.message)
-                error.args = (error.message, *error.args[1:])
-                raise
-        time.sleep(delay)
-
-
 def _run_of(
     result: batch_pb2.BatchResult,
     header: batch_pb2.BatchHeader,
@@ -182,7 +240,19 @@ def _run_of(
     measures = {name: table[:, column] for column, name in enumerate(header.measures)}
     state = _state_of(result.state, header.layout, parts) if parts else None
     return Run(begin + result.run, block[result.run], times, measures, result.state_hash, result.problem, state,
-               result.cpu_seconds)  # fmt: skip
+               result.cpu_seconds, _summary_of(result, header))  # fmt: skip
+
+
+def _summary_of(result: batch_pb2.BatchResult, header: batch_pb2.BatchHeader) -> Optional[Summary]:
+    if not result.HasField("summary"):
+        return None
+    seen = result.summary
+
+    def named(values: Iterable[float]) -> dict[str, float]:
+        return dict(zip(header.measures, values))
+
+    residual = seen.constraint_residual if seen.HasField("constraint_residual") else None
+    return Summary(seen.steps, seen.simulated_seconds, named(seen.last), named(seen.least), named(seen.greatest), residual)
 
 
 def _state_of(arrays: state_pb2.StateArrays, layout: state_pb2.StateLayout, parts: Sequence[int]) -> State:

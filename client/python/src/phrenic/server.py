@@ -8,23 +8,20 @@ import threading
 from pathlib import Path
 from typing import Any, Optional, Sequence, Union
 
-from .call import LONG, Call, one
-from .connection import Connection, Tls, target_of
+from .call import Call, one
+from .connection import Channel, Connection, Tls, target_of
 from .local import Process, binary
-from .operations import Scene, attach, source_of
+from .operations import Scene, SessionOperations, attach, describe, scenes, session_ids
 from .session import Session
 from .table import Table
 from .v1 import server_pb2, session_pb2
 
 
-class Server:
-    """A server that is called. Thread-safe. Close it, or use `with`."""
+class ServerFacts:
+    """What the blocking and the async server share: what a server says of itself."""
 
-    def __init__(self, connection: Connection) -> None:
-        self.connection = connection
-        self.about: server_pb2.GetServerResponse = connection.run(
-            one(Call("ServerService.GetServer", server_pb2.GetServerRequest()))
-        )
+    connection: Channel
+    about: server_pb2.GetServerResponse
 
     @property
     def address(self) -> str:
@@ -36,31 +33,33 @@ class Server:
         """Of the server."""
         return self.about.version
 
-    def viewer(self, session: Session) -> str:
+    def viewer(self, session: SessionOperations) -> str:
         """Returns the address at which a browser shows the session; empty if the server serves no viewer."""
         scheme = "https" if self.about.encrypted else "http"
         host = self.address.rpartition(":")[0]
         return f"{scheme}://{host}:{self.about.web_port}/?session={session.id}" if self.about.web_port else ""
 
+
+class Server(ServerFacts):
+    """A server that is called. Thread-safe. Close it, or use `with`."""
+
+    connection: Connection
+
+    def __init__(self, connection: Connection) -> None:
+        self.connection = connection
+        self.about = connection.run(one(Call("ServerService.GetServer", server_pb2.GetServerRequest())))
+
     def scenes(self) -> Table:
         """The catalogue: name, title, description, presets."""
-        return Table.of(self._call("SceneService.ListScenes", session_pb2.ListScenesRequest()).scenes)
+        return self.connection.run(scenes())
 
     def describe(self, scene: Scene, resolution_mm: Optional[float] = None) -> session_pb2.DescribeSceneResponse:
         """Compiles a scene: what runs, what was left out and why, the largest stable step (report.stable_step)."""
-        request = session_pb2.DescribeSceneRequest(source=source_of(scene, resolution_mm))
-        return self._call("SceneService.DescribeScene", request, LONG)
+        return self.connection.run(describe(scene, resolution_mm))
 
     def sessions(self) -> list[str]:
         """Ids of the sessions that the caller may see."""
-        ids: list[str] = []
-        request = session_pb2.ListSessionsRequest()
-        while True:
-            page = self._call("SessionService.ListSessions", request)
-            ids += [session.id for session in page.sessions]
-            if not page.next_page_token:
-                return ids
-            request.page_token = page.next_page_token
+        return self.connection.run(session_ids())
 
     def attach(self, id: str) -> Session:
         """Joins a session that somebody else made; closing it does not delete it."""
@@ -78,9 +77,6 @@ class Server:
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.version} at {self.address}>"
-
-    def _call(self, method: str, request: Any, deadline: Optional[float] = None) -> Any:
-        return self.connection.run(one(Call(method, request, deadline)))
 
 
 class LocalServer(Server):
