@@ -30,6 +30,7 @@ import { compileReportPanel } from "../panels/session/compile_report";
 import { ConnectionBadge, ViewerCount } from "../panels/session/connection_badge";
 import { controlBadge, ControlDialog, controlledGroup } from "../panels/session/control_dialog";
 import { encodingPanel } from "../panels/session/encoding_panel";
+import { languageMenu } from "../panels/session/language_menu";
 import { sessionButton } from "../panels/session/session_button";
 import type { SessionChooser } from "../panels/session/session_chooser";
 import { ShareDialog } from "../panels/session/share_dialog";
@@ -383,6 +384,7 @@ export class App {
     document.body.append(share.element, keys, control.element);
     elementById("share-open").onclick = () => share.show();
     elementById("help-open").onclick = () => keys.showModal();
+    elementById("help-open").before(languageMenu(localStorage, this.target.open));
     elementById("status-slot").append(
       controlBadge(this.participation, () => control.show()),
       this.viewers.element,

@@ -5,6 +5,7 @@ import type { ExportProgress } from "../session/exports";
 import { Signal } from "../state/signal";
 import { filmRate, filmTimes } from "./layout";
 import { type FilmStage, Pictures } from "./pictures";
+import { t } from "../language/translate";
 
 /** Takes the pictures of a film and makes its file. */
 export interface PictureWriter {
@@ -59,7 +60,7 @@ export class FilmMaker {
       this.progress.set({ kind: "ready", file: `${motion.scene}.webm`, size: film.size, url });
     } catch (error) {
       const reason = error instanceof Error ? error.message : String(error);
-      if (!signal.aborted) this.progress.set({ kind: "failed", message: `The film cannot be made: ${reason}.` });
+      if (!signal.aborted) this.progress.set({ kind: "failed", message: t("The film cannot be made: {0}.", reason) });
     }
   }
 

@@ -1,6 +1,7 @@
 import { elementById } from "../dom/elements";
 import { readMotion } from "../frames/clip";
 import { MotionPage } from "./page";
+import { t } from "../language/translate";
 
 // The panels are open: the page has no buttons for them.
 document.body.classList.add("graphs-open", "panel-open");
@@ -10,7 +11,7 @@ try {
   const reason = error instanceof Error ? error.message : String(error);
   elementById("loading").textContent =
     error instanceof RangeError
-      ? `This file is damaged (${reason}): export it again.`
-      : `This browser cannot draw the scene (${reason}): the page needs WebGL 2.`;
+      ? t("This file is damaged ({0}): export it again.", reason)
+      : t("This browser cannot draw the scene ({0}): the page needs WebGL 2.", reason);
   throw error;
 }

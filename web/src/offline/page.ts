@@ -29,6 +29,7 @@ import { BreathGraphs } from "./breath_graphs";
 import { factsSection } from "./facts";
 import { playback, scrubber } from "./playback";
 import { Player } from "./player";
+import { t } from "../language/translate";
 
 /** Shows a motion on the page: the scene with its layers, views and cuts, playback, graphs and facts. */
 export class MotionPage {
@@ -86,7 +87,7 @@ export class MotionPage {
 
   private buildTexts(): void {
     const { scene, preset } = motionTitle(this.motion);
-    document.title = preset === "" ? `${scene} – Phrenic` : `${scene}, ${preset.toLowerCase()} – Phrenic`;
+    document.title = preset === "" ? t("{0} – Phrenic", scene) : t("{0}, {1} – Phrenic", scene, preset.toLowerCase());
     elementById("motion-title").textContent = scene;
     elementById("motion-preset").textContent = preset;
   }
@@ -108,7 +109,7 @@ export class MotionPage {
 
   private buildPanels(): void {
     elementById("graphs").append(this.graphs.element);
-    const cuts = section("Cut", false, ...cutRows(this.cut, (cut) => this.viewer.cutCoordinate(cut)));
+    const cuts = section(t("Cut"), false, ...cutRows(this.cut, (cut) => this.viewer.cutCoordinate(cut)));
     elementById("panel").append(factsSection(this.motion), layersPanel(this.layerStyles), cuts, this.filmSection());
   }
 
@@ -120,8 +121,8 @@ export class MotionPage {
     };
     const stage = filmStage(this.viewer, undefined, (frame) => (this.filmed = frame));
     const { go, progress } = filmButton(new FilmMaker(source, stage, (...of) => FilmWriter.open(...of)));
-    const detail = make("p", { className: "faint" }, "A WebM video of the breath as the view shows it, for slides.");
-    return section("A film of this breath", false, detail, go, progress);
+    const detail = make("p", { className: "faint" }, t("A WebM video of the breath as the view shows it, for slides."));
+    return section(t("A film of this breath"), false, detail, go, progress);
   }
 
   private showScene(): void {

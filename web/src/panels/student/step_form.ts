@@ -3,6 +3,7 @@ import { make } from "../../dom/elements";
 import { alertMessage, labelledRow } from "../../dom/rows";
 import { type LessonStep, LessonStepSchema, QuestionSchema } from "../../gen/phrenic/v1/lesson_pb";
 import { faultOfStep } from "../../session/lesson_file";
+import { t } from "../../language/translate";
 
 /** What is shown now: view, preset and parameters, without words. */
 export type KeepView = () => Promise<LessonStep>;
@@ -17,13 +18,13 @@ function textRow(id: string, label: string, placeholder = ""): { row: HTMLElemen
 export class StepForm {
   readonly element = make("form", { id: "step-form" });
   private readonly title = make("input", { type: "text", id: "step-title", maxLength: 200 });
-  private readonly caption = textRow("step-caption", "Caption: what is seen, and why");
-  private readonly task = textRow("step-task", "Task (may be empty)");
+  private readonly caption = textRow("step-caption", t("Caption: what is seen, and why"));
+  private readonly task = textRow("step-task", t("Task (may be empty)"));
   private readonly words = make("input", { type: "text", id: "step-question", maxLength: 500 });
   private readonly answers = textRow(
     "step-answers",
-    "Answers: one a line, * before each right one; or one number, ± and its tolerance, and its unit",
-    "The left half pushes it.\n* It cannot pull against the pressure.",
+    t("Answers: one a line, * before each right one; or one number, ± and its tolerance, and its unit"),
+    t("The left half pushes it.\n* It cannot pull against the pressure."),
   );
   private readonly explanation = make("input", { type: "text", id: "step-explanation", maxLength: 1000 });
   private readonly fault = make("div");
@@ -36,13 +37,13 @@ export class StepForm {
     const question = make(
       "details",
       {},
-      make("summary", {}, "A question"),
-      labelledRow("step-question", "Question", this.words),
+      make("summary", {}, t("A question")),
+      labelledRow("step-question", t("Question"), this.words),
       this.answers.row,
-      labelledRow("step-explanation", "Why it is right", this.explanation),
+      labelledRow("step-explanation", t("Why it is right"), this.explanation),
     );
-    const submit = make("button", { type: "submit", id: "keep-view" }, "Keep this view as a step");
-    const rows = [labelledRow("step-title", "Title of the step", this.title), this.caption.row, this.task.row];
+    const submit = make("button", { type: "submit", id: "keep-view" }, t("Keep this view as a step"));
+    const rows = [labelledRow("step-title", t("Title of the step"), this.title), this.caption.row, this.task.row];
     this.element.append(...rows, question, this.fault, submit);
     this.element.onsubmit = (event) => {
       event.preventDefault();
@@ -53,7 +54,7 @@ export class StepForm {
   private async submit(): Promise<void> {
     const step = create(LessonStepSchema, { ...(await this.keep()), ...this.texts() });
     const fault = this.questionFault() ?? faultOfStep(step);
-    this.fault.replaceChildren(...(fault === undefined ? [] : [alertMessage(`The step cannot be kept: ${fault}.`)]));
+    this.fault.replaceChildren(...(fault === undefined ? [] : [alertMessage(t("The step cannot be kept: {0}.", fault))]));
     if (fault !== undefined) return;
     this.element.reset();
     this.add(step);
@@ -68,7 +69,7 @@ export class StepForm {
   /** Answers without a question would be lost. */
   private questionFault(): string | undefined {
     const lost = this.words.value.trim() === "" && this.answers.field.value.trim() !== "";
-    return lost ? "question.words: there are answers without a question" : undefined;
+    return lost ? t("question.words: there are answers without a question") : undefined;
   }
 
   private question() {

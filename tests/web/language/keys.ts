@@ -1,0 +1,137 @@
+import { readdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import ts from "typescript";
+import terminology from "../../../web/src/anatomy/terminology.json";
+
+const web = join(import.meta.dirname, "../../../web");
+const source = join(web, "src");
+
+/** Tables whose texts are translated where they are shown: names of constants by file. */
+const tables: Record<string, string[]> = {
+  "app/shortcuts.ts": ["pointerGestures"],
+  "appearance/fields.ts": ["fields", "tissueFields"],
+  "film/caption.ts": ["disclaimer"],
+  "fluoroscopy/attenuation.ts": ["materials"],
+  "fluoroscopy/c_arm.ts": ["standardProjections"],
+  "fluoroscopy/controls.ts": ["distances"],
+  "fluoroscopy/explanation.ts": ["texts", "sources"],
+  "fluoroscopy/sniff_test.ts": ["words", "both", "one"],
+  "graphs/catalogue.ts": ["domeHelp", "probeHelp"],
+  "graphs/student_graphs.ts": ["help", "words"],
+  "panels/jobs/export_panel.ts": ["valueNames"],
+  "panels/jobs/export_progress.ts": ["verbs"],
+  "panels/jobs/studies_panel.ts": ["kinds"],
+  "panels/jobs/take_home.ts": ["filmTitle"],
+  "panels/readings/m_mode_pictures.ts": ["help"],
+  "panels/session/banners.ts": ["halvingHelp"],
+  "panels/session/compile_report.ts": ["numbers"],
+  "panels/session/connection_badge.ts": ["rateTitle"],
+  "panels/session/encoding_panel.ts": ["encodings"],
+  "panels/student/lesson_test.ts": ["words"],
+  "panels/student/prediction_pad.ts": ["hint"],
+  "panels/view/appearance_panel.ts": ["overlayRows", "ghosts", "options"],
+  "panels/view/cut_rows.ts": ["kinds"],
+  "panels/view/force_table.ts": ["heads"],
+  "panels/view/measure_panel.ts": ["tools"],
+  "panels/view/orientation_cube.ts": ["sides"],
+  "panels/view/pick_card.ts": ["heads"],
+  "panels/view/playback.ts": ["speeds"],
+  "panels/view/quality_row.ts": ["labels"],
+  "panels/view/readout.ts": ["fields"],
+  "panels/view/tissue_card.ts": ["heads", "help"],
+  "panels/view/view_bar.ts": ["buttons"],
+  "panels/comparison/view_headers.ts": ["words"],
+  "panels/readings/probes.ts": ["heads"],
+  "viewer/viewpoints.ts": ["viewpointKeys"],
+};
+
+/** Properties whose texts are translated where they are shown. */
+const properties: Record<string, string[]> = {
+  "app/app.ts": ["description"],
+  "app/shortcuts.ts": ["description"],
+  "graphs/catalogue.ts": ["title"],
+  "graphs/student_graphs.ts": ["title"],
+};
+
+/** Texts of the sources that no rule above finds. */
+const others = ["Space", "right dome", "left dome", "right", "left", "on", "off", "Healthy", "Ill", "Machine", "Breaths"];
+
+const isWord = (text: string) => /\p{L}{2}/u.test(text);
+
+function files(folder: string): string[] {
+  return readdirSync(join(source, folder), { withFileTypes: true }).flatMap((entry) => {
+    const path = folder === "" ? entry.name : `${folder}/${entry.name}`;
+    if (entry.isDirectory()) return entry.name === "gen" || entry.name === "report" ? [] : files(path);
+    return entry.name.endsWith(".ts") ? [path] : [];
+  });
+}
+
+/** Returns the texts that an expression may have; empty for one that is computed. */
+function textsOf(node: ts.Node): string[] {
+  if (ts.isStringLiteral(node) || ts.isNoSubstitutionTemplateLiteral(node)) return [node.text];
+  if (ts.isConditionalExpression(node)) return [...textsOf(node.whenTrue), ...textsOf(node.whenFalse)];
+  if (ts.isParenthesizedExpression(node)) return textsOf(node.expression);
+  return [];
+}
+
+/** Returns all texts below a node that look like words of a sentence or a name. */
+function allTexts(node: ts.Node): string[] {
+  const own = ts.isStringLiteral(node) ? [node.text] : [];
+  const below: string[] = [];
+  ts.forEachChild(node, (child) => void below.push(...allTexts(child)));
+  return [...own, ...below];
+}
+
+function fromSource(path: string): string[] {
+  const file = ts.createSourceFile(path, readFileSync(join(source, path), "utf8"), ts.ScriptTarget.Latest, true);
+  const found: string[] = [];
+  const visit = (node: ts.Node) => {
+    if (ts.isCallExpression(node) && node.expression.getText() === "t") found.push(...textsOf(node.arguments[0]));
+    if (ts.isVariableDeclaration(node) && node.initializer && tables[path]?.includes(node.name.getText()))
+      found.push(...allTexts(node.initializer));
+    if (ts.isPropertyAssignment(node) && properties[path]?.includes(node.name.getText()))
+      found.push(...textsOf(node.initializer));
+    ts.forEachChild(node, visit);
+  };
+  visit(file);
+  return found;
+}
+
+function fromPage(name: string): string[] {
+  const html = readFileSync(join(web, name), "utf8").replace(/<head>.*<\/head>|<noscript>.*?<\/noscript>|<script.*?<\/script>/gs, "");
+  const spoken = [...html.matchAll(/(?:title|aria-label)="(.*?)"/g)].map(([, text]) => text);
+  return [...spoken, ...[...html.matchAll(/>([^<]+)</g)].map(([, text]) => text.trim())].filter((text) => text !== "Phrenic");
+}
+
+/** Returns the texts of the thorax's scene: its title, presets, layers and measures. */
+function fromScene(): string[] {
+  const scene = readFileSync(join(web, "../server/scenes/thorax.textproto"), "utf8");
+  const texts = [...scene.matchAll(/\b(?:title|description|group): "((?:[^"\\]|\\.)*)"/g)].map(([, text]) => text);
+  return [...texts, ...[...scene.matchAll(/^measures { name: "(.*?)"/gm)].map(([, name]) => name)];
+}
+
+/** Returns the names and explanations of the live parameters. */
+function fromParameters(): string[] {
+  const proto = readFileSync(join(web, "../proto/phrenic/v1/parameters.proto"), "utf8");
+  return [...proto.matchAll(/\b(?:label|help|\(group\))\s*[:=]\s*((?:"[^"]*"\s*)+)/g)].map(([, quoted]) =>
+    [...quoted.matchAll(/"([^"]*)"/g)].map(([, part]) => part).join(""),
+  );
+}
+
+function fromTerminology(): string[] {
+  return terminology.structures.flatMap(({ name, definitions }) => [name, ...Object.values(definitions)]);
+}
+
+/** Returns every English text that a catalogue must translate. */
+export function keysOfSources(): Set<string> {
+  const all = [
+    ...files("").flatMap(fromSource),
+    ...fromPage("index.html"),
+    ...fromPage("offline.html"),
+    ...fromScene(),
+    ...fromParameters(),
+    ...fromTerminology(),
+    ...others,
+  ];
+  return new Set(all.filter(isWord));
+}
