@@ -17,6 +17,7 @@ const tables: Record<string, string[]> = {
   "fluoroscopy/explanation.ts": ["texts", "sources"],
   "fluoroscopy/sniff_test.ts": ["words", "both", "one"],
   "graphs/catalogue.ts": ["domeHelp", "probeHelp"],
+  "graphs/motion_words.ts": ["words", "rise", "fall"],
   "graphs/student_graphs.ts": ["help", "words"],
   "panels/jobs/export_panel.ts": ["valueNames"],
   "panels/jobs/export_progress.ts": ["verbs"],
@@ -53,10 +54,19 @@ const properties: Record<string, string[]> = {
   "graphs/student_graphs.ts": ["title"],
 };
 
-/** Texts of the sources that no rule above finds. */
-const others = ["Space", "right dome", "left dome", "right", "left", "on", "off", "Healthy", "Ill", "Machine", "Breaths"];
+/** Texts of tables that look like names of the program, and texts that are composed. */
+const others = [
+  ..."right left on off above below muscle air parallel default positions displacements vertices springs attachments fastest".split(
+    " ",
+  ),
+  ..."time tick breath pace links dome distance angle area volume".split(" "),
+  ..."Space Healthy Ill Machine Breaths Supine Upright Prone".split(" "),
+  ..."Flows Pressures Heights Energies".split(" "),
+  ...["right dome", "left dome", "Right side", "Left side"],
+];
 
-const isWord = (text: string) => /\p{L}{2}/u.test(text);
+/** True for a text that has a word: neither a symbol nor a name of the program. */
+const isSentence = (text: string) => /\p{L}{2}/u.test(text) && /^[^\p{L}]*\p{Lu}| /u.test(text);
 
 function files(folder: string): string[] {
   return readdirSync(join(source, folder), { withFileTypes: true }).flatMap((entry) => {
@@ -79,7 +89,7 @@ function allTexts(node: ts.Node): string[] {
   const own = ts.isStringLiteral(node) ? [node.text] : [];
   const below: string[] = [];
   ts.forEachChild(node, (child) => void below.push(...allTexts(child)));
-  return [...own, ...below];
+  return [...own, ...below].filter(isSentence);
 }
 
 function fromSource(path: string): string[] {
@@ -98,9 +108,14 @@ function fromSource(path: string): string[] {
 }
 
 function fromPage(name: string): string[] {
-  const html = readFileSync(join(web, name), "utf8").replace(/<head>.*<\/head>|<noscript>.*?<\/noscript>|<script.*?<\/script>/gs, "");
+  const html = readFileSync(join(web, name), "utf8").replace(
+    /<head>.*<\/head>|<noscript>.*?<\/noscript>|<script.*?<\/script>/gs,
+    "",
+  );
   const spoken = [...html.matchAll(/(?:title|aria-label)="(.*?)"/g)].map(([, text]) => text);
-  return [...spoken, ...[...html.matchAll(/>([^<]+)</g)].map(([, text]) => text.trim())].filter((text) => text !== "Phrenic");
+  return [...spoken, ...[...html.matchAll(/>([^<]+)</g)].map(([, text]) => text.trim())].filter(
+    (text) => text !== "Phrenic",
+  );
 }
 
 /** Returns the texts of the thorax's scene: its title, presets, layers and measures. */
@@ -133,5 +148,5 @@ export function keysOfSources(): Set<string> {
     ...fromTerminology(),
     ...others,
   ];
-  return new Set(all.filter(isWord));
+  return new Set(all.filter((text) => /\p{L}{2}/u.test(text)));
 }

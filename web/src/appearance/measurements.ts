@@ -5,7 +5,7 @@ import { Placement } from "../gen/phrenic/v1/frames_pb";
 import type { GraphSpec } from "../graphs/catalogue";
 import { Signal } from "../state/signal";
 import { TimeSeries } from "../state/time_series";
-import { fixed } from "../language/translate";
+import { fixed, t } from "../language/translate";
 
 /** A tool: the distance of two points, the angle at the second of three, or the surface of the structure at one. */
 export type MeasureTool = "distance" | "angle" | "surface";
@@ -140,7 +140,7 @@ export class Measurements {
       const measured = this.all.value.filter(({ id }) => history.series.has(String(id)));
       const [unit, factor] = units[what];
       const curves = measured.map(({ id, name }) => ({ key: String(id), name, factor, order: id }));
-      const spec = { id: `measured-${what}`, title: `Measured ${what}`, unit, curves };
+      const spec = { id: `measured-${what}`, title: t("Measured {0}", t(what)), unit, curves };
       return curves.length === 0 ? [] : [{ spec, history }];
     });
   }

@@ -169,7 +169,10 @@ export class Fluoroscope {
   /** An automatic window follows the projection. */
   private changeArm(): void {
     const { arm, window } = this.settings;
-    this.canvas.ariaLabel = t("X-ray-like projection of the thorax, {0}. Arrow keys turn the C-arm.", t(angleName(arm.value)));
+    this.canvas.ariaLabel = t(
+      "X-ray-like projection of the thorax, {0}. Arrow keys turn the C-arm.",
+      t(angleName(arm.value)),
+    );
     if (!this.manual) window.set(undefined);
     this.parts.redraw();
   }

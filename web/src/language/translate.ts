@@ -36,3 +36,8 @@ export function fixed(value: number, digits: number): string {
 export function lower(name: string): string {
   return nounsHaveCapitals ? name : name.toLowerCase();
 }
+
+/** Returns a sentence as it stands after a colon: a German one keeps its capital. */
+export function afterColon(sentence: string): string {
+  return nounsHaveCapitals ? sentence : sentence.charAt(0).toLowerCase() + sentence.slice(1);
+}

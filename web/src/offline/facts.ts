@@ -12,7 +12,9 @@ import { decimal, t } from "../language/translate";
 export function factsSection(motion: OfflineMotion): HTMLElement {
   const active = activePreset(motion.presets, motion.parameters);
   const changed = differences(motion.sceneParameters, motion.parameters);
-  const rows: [name: string, words: string][] = [[t("Scene"), `${t(motion.sceneTitle) || motion.scene} (${motion.scene})`]];
+  const rows: [name: string, words: string][] = [
+    [t("Scene"), `${t(motion.sceneTitle) || motion.scene} (${motion.scene})`],
+  ];
   if (active !== undefined) rows.push([t("Breath"), `${presetLabel(active)}. ${t(active.description)}`]);
   rows.push([t("Parameters"), changed === "" ? t("Those of the scene.") : `${changed}.`]);
   const list = rows.flatMap(([name, words]) => [make("dt", {}, name), make("dd", {}, words)]);

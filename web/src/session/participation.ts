@@ -50,7 +50,9 @@ export function controlLabel({ control, hasControl }: Roles): string {
 
 /** Returns why this viewer's controls are disabled; empty if they are enabled. */
 export function refusalReason({ control, mayChange }: Roles): string {
-  return mayChange ? "" : t("{0} controls this session: ask for control, or fork it under “Share”.", control?.controller ?? "");
+  return mayChange
+    ? ""
+    : t("{0} controls this session: ask for control, or fork it under “Share”.", control?.controller ?? "");
 }
 
 /**

@@ -24,7 +24,11 @@ export function distancePanel(
     // Allows to select the same file again after it changed.
     if (chosen !== undefined) void comparisons.compare(chosen).finally(() => (file.value = ""));
   };
-  const open = make("button", { type: "button", id: "compare", onclick: () => file.click() }, t("Compare with a file…"));
+  const open = make(
+    "button",
+    { type: "button", id: "compare", onclick: () => file.click() },
+    t("Compare with a file…"),
+  );
   const hint = make("p", { className: "faint" });
   endings.subscribe((all) => {
     file.accept = all.join(",");
@@ -54,7 +58,13 @@ function unitRow(comparisons: Comparisons): HTMLElement {
 
 function timeRow(comparisons: Comparisons): HTMLElement {
   const help = "For a motion file: time of the compared state in seconds; empty for the session's time";
-  const entry = make("input", { type: "number", step: "any", id: "compare-time", placeholder: t("current"), title: help });
+  const entry = make("input", {
+    type: "number",
+    step: "any",
+    id: "compare-time",
+    placeholder: t("current"),
+    title: help,
+  });
   entry.onchange = () => comparisons.choose({ time: entry.value === "" ? undefined : entry.valueAsNumber });
   return labelledRow("compare-time", t("Time in the motion [s]"), entry);
 }

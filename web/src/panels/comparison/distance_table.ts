@@ -26,7 +26,7 @@ export function formatMillimetres(value: number): string {
 /** Returns a table of the measures of a comparison [mm] with their names in the schema. */
 export function distanceTable(distance: SurfaceDistance): HTMLTableElement {
   const titles = heads.map(([head, title]) => make("th", { scope: "col", title }, head));
-  const head = make("tr", {}, make("th", { scope: "col" }, t("mm")), ...titles);
+  const head = make("tr", {}, make("th", { scope: "col" }, "mm"), ...titles);
   const body = rows.map(([label, names]) => {
     const cells = names.map((name) => (name === undefined ? make("td") : cell(name, distance)));
     return make("tr", {}, make("th", { scope: "row" }, label), ...cells);

@@ -79,7 +79,8 @@ export function domeLabel(frame: Frame | undefined): string {
   return domeHeights(frame)
     .map(({ name, height }) => {
       const way = fixed(1000 * Math.abs(height), 1);
-      const words = Number((1000 * height).toFixed(1)) === 0 ? "{0} {1} mm" : height > 0 ? "{0} {1} mm up" : "{0} {1} mm down";
+      const words =
+        Number((1000 * height).toFixed(1)) === 0 ? "{0} {1} mm" : height > 0 ? "{0} {1} mm up" : "{0} {1} mm down";
       return t(words, t(name), way);
     })
     .join(", ");

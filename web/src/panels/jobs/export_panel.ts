@@ -20,7 +20,9 @@ export function exportPanel(exports: Exports, bodies: Signal<Body[]>): HTMLEleme
     formatRow(exports),
     bodyRow(exports, bodies),
     numberRow("export-seconds", t("Duration [s]"), "8", (value) => exports.choose({ seconds: value ?? 8 })),
-    numberRow("export-fps", t("Frames per second"), t("default"), (value) => exports.choose({ framesPerSecond: value })),
+    numberRow("export-fps", t("Frames per second"), t("default"), (value) =>
+      exports.choose({ framesPerSecond: value }),
+    ),
     valuesRow(exports),
   ];
   const [, bodyChoice, length, rate, values] = rows as [HTMLElement, ...HTMLElement[]];

@@ -62,5 +62,7 @@ function finishedElements(work: ExportProgress, id: string): HTMLElement[] {
   if (work.kind === "failed") return [alertMessage(work.message)];
   if (work.kind !== "ready") return [];
   const size = fixed(work.size / 1e6, 1);
-  return [make("a", { href: work.url, download: work.file, id: `${id}-link` }, t("Save {0} ({1} MB)", work.file, size))];
+  return [
+    make("a", { href: work.url, download: work.file, id: `${id}-link` }, t("Save {0} ({1} MB)", work.file, size)),
+  ];
 }

@@ -25,7 +25,9 @@ type Filming = FileMaking & { start(): Promise<void> };
 /** Returns a row with a button that films the next breath, as a WebM file. */
 export function filmRow(film: Filming): HTMLElement {
   const { go, progress } = filmButton(film);
-  const detail = t("A WebM video of the next breath as the view shows it, for slides: 25 pictures per simulated second.");
+  const detail = t(
+    "A WebM video of the next breath as the view shows it, for slides: 25 pictures per simulated second.",
+  );
   return make("li", {}, make("div", {}, make("b", {}, t(filmTitle)), make("span", {}, detail), progress), go);
 }
 

@@ -40,7 +40,11 @@ export class GraphsPanel {
     this.length.append(...lengths.map((each) => make("option", { value: String(each) }, `${each} s`)));
     this.length.value = "12";
     this.length.onchange = () => this.resume();
-    this.pause = button(t("Hold the graphs"), () => (this.held ? this.resume() : this.hold(this.newest())), icon("pause"));
+    this.pause = button(
+      t("Hold the graphs"),
+      () => (this.held ? this.resume() : this.hold(this.newest())),
+      icon("pause"),
+    );
     this.pause.id = "graphs-pause";
     this.pause.className = "quiet";
     const title = make("h2", {}, t("Graphs"));

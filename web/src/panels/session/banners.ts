@@ -101,7 +101,9 @@ async function restartStable(controller: SessionController, largest: number): Pr
 }
 
 function lossMessage(reason: string, missing: boolean, chooseSession: () => void): HTMLElement[] {
-  const words = missing ? sentence(reason) : t("The connection is lost: {0} Reconnecting automatically.", sentence(reason));
+  const words = missing
+    ? sentence(reason)
+    : t("The connection is lost: {0} Reconnecting automatically.", sentence(reason));
   const choose = make("button", { type: "button", onclick: chooseSession }, t("Choose a session"));
   return [make("p", {}, words), ...(missing ? [choose] : [])];
 }

@@ -35,7 +35,14 @@ function step({ stableStep }: CompileReport): HTMLElement {
   if (stableStep === undefined) return make("p");
   const { seconds, chosenSeconds, reason } = stableStep;
   const largest = make("b", {}, `${decimal(formatNumber(1000 * seconds))} ms`);
-  return make("p", {}, t("Largest stable step "), largest, t(", chosen {0} ms. ", decimal(formatNumber(1000 * chosenSeconds))), reason);
+  return make(
+    "p",
+    {},
+    t("Largest stable step "),
+    largest,
+    t(", chosen {0} ms. ", decimal(formatNumber(1000 * chosenSeconds))),
+    reason,
+  );
 }
 
 function list(title: string, items: [string, string][]): HTMLElement {
@@ -81,5 +88,10 @@ function bodies(report: CompileReport): HTMLElement {
 
 function hash({ sceneHash, compileSeconds }: CompileReport): HTMLElement {
   const short = make("code", { title: sceneHash }, sceneHash.slice(0, 12));
-  return make("p", { className: "faint" }, t("Compiled in {0} s. Scene ", decimal(formatNumber(compileSeconds))), short);
+  return make(
+    "p",
+    { className: "faint" },
+    t("Compiled in {0} s. Scene ", decimal(formatNumber(compileSeconds))),
+    short,
+  );
 }

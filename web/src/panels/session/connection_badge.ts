@@ -41,7 +41,8 @@ export function connectionLabels({ connection, session, rate, now }: Status): {
   detail: string;
   title: string;
 } {
-  if (connection.kind === "connecting") return { text: t("Connecting"), detail: "", title: t("Waiting for the server.") };
+  if (connection.kind === "connecting")
+    return { text: t("Connecting"), detail: "", title: t("Waiting for the server.") };
   if (connection.kind === "lost") {
     const seconds = Math.max(0, Math.ceil((connection.retryAt - now) / 1000));
     const detail = seconds > 0 ? t("retrying in {0} s", seconds) : t("retrying");

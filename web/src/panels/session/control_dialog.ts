@@ -16,7 +16,8 @@ export function controlBadge(participation: Participation, open: () => void): HT
   const badge = make("button", { type: "button", id: "control-badge", className: "pill", onclick: open }, words);
   participation.roles.subscribe((roles) => {
     const asking = roles.mayHandOver ? (roles.control?.participants ?? []).filter(({ asks }) => asks) : [];
-    words.textContent = asking.length > 0 ? t("{0} · {1} asks", controlLabel(roles), asking[0].name) : controlLabel(roles);
+    words.textContent =
+      asking.length > 0 ? t("{0} · {1} asks", controlLabel(roles), asking[0].name) : controlLabel(roles);
     badge.dataset.asked = String(asking.length > 0);
     badge.title = t("Who may change this session: ask for control, hand it over, follow the camera");
   });
@@ -37,7 +38,12 @@ export function controlledGroup(participation: Participation, ...children: (Node
 export class ControlDialog {
   readonly element = make("dialog", { className: "chooser", id: "control", ariaLabel: t("Who controls") });
   private readonly state = make("p", { id: "control-state" });
-  private readonly name = make("input", { type: "text", id: "control-name", maxLength: 40, placeholder: t("Your name") });
+  private readonly name = make("input", {
+    type: "text",
+    id: "control-name",
+    maxLength: 40,
+    placeholder: t("Your name"),
+  });
   private readonly actions = make("div", { className: "acts" });
   private readonly people = make("ul", { id: "control-people" });
   private readonly errorMessage = make("p", { className: "fault", id: "control-fault" });

@@ -13,7 +13,9 @@ const encodings: [Codec, string, string][] = [
 /** Selects the encoding of frames for this viewer. */
 export function encodingPanel(choose: (codec: Codec) => void): HTMLElement {
   const list = make("select", { id: "stream-codec", title: t("Encoding of frames on the network") });
-  list.append(...encodings.map(([codec, label, title]) => make("option", { value: String(codec), title: t(title) }, t(label))));
+  list.append(
+    ...encodings.map(([codec, label, title]) => make("option", { value: String(codec), title: t(title) }, t(label))),
+  );
   const hint = make("p", { className: "faint", id: "stream-hint" });
   const show = () => (hint.textContent = t(encodings.find(([codec]) => codec === Number(list.value))?.[2] ?? ""));
   list.onchange = () => {

@@ -6,7 +6,9 @@ import { t } from "../../language/translate";
 export function languageMenu(storage: Pick<Storage, "setItem">, open: (query: string) => void): HTMLElement {
   const list = make("select", { id: "language", ariaLabel: t("Language"), title: t("Language") });
   for (const [value, name] of Object.entries(languages))
-    list.append(make("option", { value, lang: value, ariaLabel: name, selected: value === pageLanguage() }, value.toUpperCase()));
+    list.append(
+      make("option", { value, lang: value, ariaLabel: name, selected: value === pageLanguage() }, value.toUpperCase()),
+    );
   list.onchange = () => {
     rememberLanguage(list.value as Language, storage);
     const query = new URLSearchParams(location.search);

@@ -44,7 +44,8 @@ export class SessionChooser {
   }
 
   private sessionRow({ id, scene, sceneTitle, state, viewers }: Session): HTMLElement {
-    const words = state === SessionState.PLAYING ? t("playing") : state === SessionState.DIVERGED ? t("diverged") : t("paused");
+    const words =
+      state === SessionState.PLAYING ? t("playing") : state === SessionState.DIVERGED ? t("diverged") : t("paused");
     const detail = `${id}, ${words}, ${viewers === 1 ? t("1 viewer") : t("{0} viewers", viewers)}`;
     return this.row(t(sceneTitle) || scene, detail, t("Open"), async () => this.open(id));
   }

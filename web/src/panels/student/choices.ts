@@ -41,7 +41,8 @@ export class Choices {
   /** Shows the cause of the active preset when another one becomes active. */
   private follow(all: Preset[], parameters: Parameters | undefined): void {
     const active = activePreset(all, parameters);
-    this.description.textContent = active === undefined ? t("Your own breath, by the three sliders.") : t(active.description);
+    this.description.textContent =
+      active === undefined ? t("Your own breath, by the three sliders.") : t(active.description);
     if (active !== this.active) {
       this.active = active;
       const [cause, members] = [...this.members].find(([, each]) => active && each.includes(active)) ?? [

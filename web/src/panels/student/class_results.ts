@@ -90,7 +90,13 @@ export class ClassResults {
     if (tests !== undefined) {
       const gain = Math.round(100 * (tests.after - tests.before));
       const points = `${gain >= 0 ? "+" : "−"}${Math.abs(gain)}`;
-      const words = t("Tests of {0}: {1} right before the lesson, {2} after it ({3} points).", tests.respondents, percent(tests.before), percent(tests.after), points);
+      const words = t(
+        "Tests of {0}: {1} right before the lesson, {2} after it ({3} points).",
+        tests.respondents,
+        percent(tests.before),
+        percent(tests.after),
+        points,
+      );
       parts.push(make("p", { id: "class-tests" }, words));
     }
     return parts.length > 0 ? parts : [make("p", {}, t("This step has no question."))];
@@ -102,7 +108,10 @@ export class ClassResults {
     const words = make("p", {}, t("{0} answered, {1} right, {2} at the first attempt.", answered, right, firstRight));
     const bars = question.answers.map((each, i) => bar(each.words, counts[i], answered, each.right));
     const unit = question.number?.unit ?? "";
-    const given = numbers.length === 0 ? [] : [make("p", {}, t("Numbers [{0}]: {1}", unit, numbers.map((each) => decimal(String(each))).join("; ")))];
+    const given =
+      numbers.length === 0
+        ? []
+        : [make("p", {}, t("Numbers [{0}]: {1}", unit, numbers.map((each) => decimal(String(each))).join("; ")))];
     return [words, ...bars, ...given, ...this.named(question, step)];
   }
 
@@ -111,7 +120,10 @@ export class ClassResults {
     const rows = this.answers
       .filter((each) => each.step === step && each.phase === AnswerPhase.UNSPECIFIED)
       .map(({ name, respondent, choices, number, right }) => {
-        const words = number !== undefined ? decimal(String(number)) : choices.map((i) => question.answers[i]?.words ?? "").join("; ");
+        const words =
+          number !== undefined
+            ? decimal(String(number))
+            : choices.map((i) => question.answers[i]?.words ?? "").join("; ");
         return make("li", {}, `${name || t("Number {0}", respondent)}: ${words}${right ? " ✓" : ""}`);
       });
     return [make("ul", {}, ...rows)];

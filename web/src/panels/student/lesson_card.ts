@@ -176,7 +176,11 @@ export class LessonCard {
     const last = step === this.lesson?.steps.length;
     const back = make("button", { type: "button", id: "lesson-back", onclick: () => this.move(-1) }, t("Back"));
     back.disabled = step === 1;
-    const next = make("button", { type: "button", id: "lesson-next", className: "primary" }, last ? t("Finish") : t("Next"));
+    const next = make(
+      "button",
+      { type: "button", id: "lesson-next", className: "primary" },
+      last ? t("Finish") : t("Next"),
+    );
     next.onclick = () => (last ? this.finish() : this.move(1));
     const leave = make("button", { type: "button", id: "lesson-leave", onclick: () => this.leave() }, t("Leave"));
     return make("div", { className: "lesson-buttons" }, back, leave, next);

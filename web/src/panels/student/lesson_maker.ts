@@ -38,7 +38,10 @@ export class LessonMaker {
     });
     const buttons: [words: string, act: () => void][] = [
       [t("Save and play"), () => this.withLesson((lesson) => making.play(making.save(lesson)))],
-      [t("Save in this browser"), () => this.withLesson((lesson) => this.tell(t("Kept as “{0}”.", making.save(lesson))))],
+      [
+        t("Save in this browser"),
+        () => this.withLesson((lesson) => this.tell(t("Kept as “{0}”.", making.save(lesson)))),
+      ],
       [t("Save as file"), () => this.withLesson(saveAsFile)],
       [t("Leave"), () => making.leave()],
     ];
@@ -59,7 +62,8 @@ export class LessonMaker {
     this.lesson.title = this.title.value.trim();
     this.lesson.summary = this.summary.value.trim();
     const fault = faultOf(this.lesson);
-    if (fault !== undefined) return this.words.replaceChildren(alertMessage(t("The lesson is not complete: {0}.", fault)));
+    if (fault !== undefined)
+      return this.words.replaceChildren(alertMessage(t("The lesson is not complete: {0}.", fault)));
     try {
       act(this.lesson);
     } catch (error) {

@@ -33,7 +33,11 @@ export class PredictionPad {
   private readonly seen = polyline("seen");
   private readonly words = make("p", { id: "prediction-words" });
   private readonly begin = make("button", { type: "button", id: "predict" }, t("Predict the next breath"));
-  private readonly play = make("button", { type: "button", id: "predict-play", className: "primary" }, t("Play and see"));
+  private readonly play = make(
+    "button",
+    { type: "button", id: "predict-play", className: "primary" },
+    t("Play and see"),
+  );
   private prediction: Prediction | undefined;
   private range: [low: number, high: number] = [0, 1];
   private cursor = 0;

@@ -20,7 +20,9 @@ export function questionForm(question: Question, answered: (answer: GivenAnswer)
     result.textContent =
       answer === undefined
         ? t("Choose an answer first.")
-        : answer.right ? `${t("Right.")} ${question.explanation}` : `${t("Not yet.")} ${t("Try again.")}`;
+        : answer.right
+          ? `${t("Right.")} ${question.explanation}`
+          : `${t("Not yet.")} ${t("Try again.")}`;
     result.dataset.right = String(answer?.right === true);
     if (answer !== undefined) answered(answer);
   };

@@ -54,7 +54,9 @@ export class StepForm {
   private async submit(): Promise<void> {
     const step = create(LessonStepSchema, { ...(await this.keep()), ...this.texts() });
     const fault = this.questionFault() ?? faultOfStep(step);
-    this.fault.replaceChildren(...(fault === undefined ? [] : [alertMessage(t("The step cannot be kept: {0}.", fault))]));
+    this.fault.replaceChildren(
+      ...(fault === undefined ? [] : [alertMessage(t("The step cannot be kept: {0}.", fault))]),
+    );
     if (fault !== undefined) return;
     this.element.reset();
     this.add(step);

@@ -30,7 +30,10 @@ export function answerSheet(lesson: Lesson): HTMLElement {
     question === undefined ? [] : [make("section", {}, make("h2", {}, `${i + 1}. ${title}`), ...answerOf(question))],
   );
   const none = make("p", {}, t("This lesson has no questions."));
-  const head = [make("h1", {}, t("Answers: {0}", lesson.title)), make("p", { className: "summary" }, t("For the teacher."))];
+  const head = [
+    make("h1", {}, t("Answers: {0}", lesson.title)),
+    make("p", { className: "summary" }, t("For the teacher.")),
+  ];
   return make("article", { className: "sheet" }, ...head, ...(answers.length > 0 ? answers : [none]), disclaimer());
 }
 
@@ -94,7 +97,11 @@ function predictionAxes(): HTMLElement {
   const rows = Array.from({ length: 5 }, (_, i) => `M30 ${10 + 28 * i}H270`);
   path([...columns, ...rows].join(""), "grid");
   path("M30 4V150H278M26 10L30 3L34 10M271 146L278 150L271 154", "axes");
-  const words = make("figcaption", {}, t("Draw what you expect: air in the lungs (up) over one breath (to the right)."));
+  const words = make(
+    "figcaption",
+    {},
+    t("Draw what you expect: air in the lungs (up) over one breath (to the right)."),
+  );
   return make("figure", {}, svg, words);
 }
 

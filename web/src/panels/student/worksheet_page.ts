@@ -41,7 +41,11 @@ export function openWorksheet(lesson: Lesson, parts: WorksheetParts, use: Worksh
 }
 
 function bar(answers: HTMLElement, { teaches, print }: WorksheetUse, close: () => void): HTMLElement {
-  const go = make("button", { type: "button", id: "worksheet-print", className: "primary", onclick: print }, t("Print"));
+  const go = make(
+    "button",
+    { type: "button", id: "worksheet-print", className: "primary", onclick: print },
+    t("Print"),
+  );
   const end = make("button", { type: "button", id: "worksheet-close", onclick: close }, t("Close"));
   const help = t("The right answers on a page of their own");
   const { row } = switchRow(t("Answers for the teacher"), help, (on) => (answers.hidden = !on));

@@ -45,7 +45,9 @@ const ghosts: [GhostKind, string][] = [
 
 /** A panel for colours, transparency, clipping, ghost, overlays and labels. */
 export function appearancePanel(view: AppearanceSettings): HTMLElement {
-  const ghost = choice("ghost", t("Ghost"), t("Deformable bodies in another state"), ghosts, (kind) => view.ghost.set(kind));
+  const ghost = choice("ghost", t("Ghost"), t("Deformable bodies in another state"), ghosts, (kind) =>
+    view.ghost.set(kind),
+  );
   view.ghost.subscribe((kind) => (ghost.querySelector("select")!.value = kind));
   const labels = switchRow(t("Show names"), t("Names of the visible structures (N)."), (on) => view.labels.set(on));
   view.labels.subscribe((on) => (labels.input.checked = on));

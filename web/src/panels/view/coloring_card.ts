@@ -22,7 +22,13 @@ export function coloringCard(coloring: Coloring): HTMLElement {
     t("Fit"),
   );
   fit.onclick = () => coloring.fit();
-  const row = make("div", { className: "row" }, make("label", { htmlFor: "coloring-top" }, t("End of scale")), top, fit);
+  const row = make(
+    "div",
+    { className: "row" },
+    make("label", { htmlFor: "coloring-top" }, t("End of scale")),
+    top,
+    fit,
+  );
   const note = make("p", { className: "faint", id: "coloring-note" });
   note.setAttribute("role", "status");
   coloring.message.subscribe((words) => (note.textContent = t(words)));

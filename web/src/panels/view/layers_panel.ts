@@ -20,7 +20,13 @@ function layerRow({ layer, title: english, color }: LayerStyle, layerStyles: Lay
   const swatch = make("span", { className: "swatch" });
   swatch.style.backgroundColor = color;
   const visible = make("input", { type: "checkbox", ariaLabel: t("Show {0}", title) });
-  const opacity = make("input", { type: "range", min: "5", max: "100", step: "1", ariaLabel: t("Opacity of {0}", title) });
+  const opacity = make("input", {
+    type: "range",
+    min: "5",
+    max: "100",
+    step: "1",
+    ariaLabel: t("Opacity of {0}", title),
+  });
   visible.onchange = () => layerStyles.change(layer, { visible: visible.checked });
   opacity.oninput = () => layerStyles.change(layer, { opacity: opacity.valueAsNumber / 100, visible: true });
   layerStyles.all.subscribe(() => {

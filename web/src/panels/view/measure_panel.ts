@@ -59,7 +59,11 @@ export class MeasurePanel {
     const { measurements } = this;
     return tools.map(([tool, label, title]) => {
       const toggle = () => measurements.use(measurements.tool.value === tool ? undefined : tool);
-      const element = make("button", { type: "button", id: `measure-${tool}`, title: t(title), onclick: toggle }, t(label));
+      const element = make(
+        "button",
+        { type: "button", id: `measure-${tool}`, title: t(title), onclick: toggle },
+        t(label),
+      );
       measurements.tool.subscribe((active) => (element.ariaPressed = String(active === tool)));
       return element;
     });

@@ -9,7 +9,11 @@ const letterWidth = 6.8;
 
 /** The names beside the scene; those of structures are buttons among which the arrow keys move. */
 export class NameLabels {
-  readonly element = make("div", { className: "name-labels", ariaLabel: t("Names of visible structures"), hidden: true });
+  readonly element = make("div", {
+    className: "name-labels",
+    ariaLabel: t("Names of visible structures"),
+    hidden: true,
+  });
   /** Text of the name that had the focus before the names were hidden. */
   private kept: string | undefined;
   private readonly changed = oneTabStop(this.element);

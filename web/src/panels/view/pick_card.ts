@@ -57,7 +57,11 @@ export class PickCard {
     const swatch = make("span", { className: "swatch" });
     swatch.style.backgroundColor = curveColor(order);
     const name = vertexLabel(ref);
-    const leave = make("button", { type: "button", className: "small", ariaLabel: t("Stop tracking {0}", name) }, t("Stop"));
+    const leave = make(
+      "button",
+      { type: "button", className: "small", ariaLabel: t("Stop tracking {0}", name) },
+      t("Stop"),
+    );
     leave.onclick = () => this.trackedVertices.untrack(ref);
     return make("div", { className: "key" }, swatch, make("span", {}, name), leave);
   }

@@ -48,7 +48,9 @@ function option(label: string, value: string): HTMLOptionElement {
 
 function speedSelect(controller: SessionController): HTMLSelectElement {
   const select = make("select", { id: "speed", ariaLabel: t("Speed"), title: t("Simulated seconds per second") });
-  select.append(...speeds.map(([label, value]) => option(label === "fastest" ? t(label) : decimal(label), String(value))));
+  select.append(
+    ...speeds.map(([label, value]) => option(label === "fastest" ? t(label) : decimal(label), String(value))),
+  );
   select.onchange = () => {
     if (controller.session.value?.state === SessionState.PLAYING) void controller.play(chosenSpeed(select));
   };

@@ -15,7 +15,9 @@ export class Readout {
     for (const [name, title] of fields) {
       const value = make("b", { id: `status-${name}` });
       this.values.set(name, value);
-      this.element.append(make("span", { className: `reading ${name}`, title: t(title) }, make("i", {}, t(name)), value));
+      this.element.append(
+        make("span", { className: `reading ${name}`, title: t(title) }, make("i", {}, t(name)), value),
+      );
     }
     this.values.get("breath")?.before(make("span", { className: "breath-track", ariaHidden: "true" }, this.bar));
   }

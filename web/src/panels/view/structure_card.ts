@@ -45,7 +45,8 @@ export function structureCard(
   });
   isolated.subscribe((structure) => {
     alone.textContent = structure === undefined ? t("Show alone") : t("Show all");
-    alone.title = structure === undefined ? t("Fly to it and fade all others") : t("Show all structures again (Escape)");
+    alone.title =
+      structure === undefined ? t("Fly to it and fade all others") : t("Show all structures again (Escape)");
   });
   return card;
 }

@@ -48,7 +48,11 @@ export class TissueCard {
     const swatch = make("span", { className: "swatch" });
     swatch.style.backgroundColor = curveColor(order);
     const name = pointLabel(point);
-    const leave = make("button", { type: "button", className: "small", ariaLabel: t("Stop following {0}", name) }, t("Stop"));
+    const leave = make(
+      "button",
+      { type: "button", className: "small", ariaLabel: t("Stop following {0}", name) },
+      t("Stop"),
+    );
     leave.onclick = () => this.points.remove(point);
     const head = make("th", { scope: "row" }, make("span", { className: "key" }, swatch, name));
     return make("tr", {}, head, make("td"), make("td"), make("td"), make("td", {}, leave));
