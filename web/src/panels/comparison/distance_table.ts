@@ -2,7 +2,7 @@ import { getOption } from "@bufbuild/protobuf";
 import { make } from "../../dom/elements";
 import { type SurfaceDistance, SurfaceDistanceSchema } from "../../gen/phrenic/v1/compare_pb";
 import { quantity } from "../../gen/phrenic/v1/options_pb";
-import { fixed, t } from "../../language/translate";
+import { fixed } from "../../language/translate";
 
 /** Measures by their names in the schema: body to file, file to body, and both. */
 const rows: [label: string, names: (string | undefined)[]][] = [
