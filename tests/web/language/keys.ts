@@ -43,7 +43,7 @@ const tables: Record<string, string[]> = {
   "panels/view/view_bar.ts": ["buttons"],
   "panels/comparison/view_headers.ts": ["words"],
   "panels/readings/probes.ts": ["heads"],
-  "viewer/viewpoints.ts": ["viewpointKeys"],
+  "viewer/viewpoints.ts": ["directions", "cuts"],
 };
 
 /** Properties whose texts are translated where they are shown. */
@@ -63,6 +63,8 @@ const others = [
   ..."Space Healthy Ill Machine Breaths Supine Upright Prone".split(" "),
   ..."Flows Pressures Heights Energies".split(" "),
   ...["right dome", "left dome", "Right side", "Left side"],
+  ...["right summit", "left summit", "sternum", "rib 8 right", "rib 8 left"],
+  ...["PAGEDOWN", "PAGEUP", "ESCAPE"],
 ];
 
 /** True for a text that has a word: neither a symbol nor a name of the program. */
@@ -118,17 +120,22 @@ function fromPage(name: string): string[] {
   );
 }
 
-/** Returns the texts of the thorax's scene: its title, presets, layers and measures. */
-function fromScene(): string[] {
-  const scene = readFileSync(join(web, "../server/scenes/thorax.textproto"), "utf8");
-  const texts = [...scene.matchAll(/\b(?:title|description|group): "((?:[^"\\]|\\.)*)"/g)].map(([, text]) => text);
-  return [...texts, ...[...scene.matchAll(/^measures { name: "(.*?)"/gm)].map(([, name]) => name)];
+/** Returns the texts of the scenes: titles, presets, layers and measures. */
+function fromScenes(): string[] {
+  const folder = join(web, "../server/scenes");
+  const scenes = readdirSync(folder).filter((name) => name.endsWith(".textproto"));
+  return scenes.flatMap((name) => {
+    const scene = readFileSync(join(folder, name), "utf8");
+    const texts = [...scene.matchAll(/\b(?:title|description|group): "((?:[^"\\]|\\.)*)"/g)].map(([, text]) => text);
+    const measures = [...scene.matchAll(/^measures { name: "(.*?)"/gm)].map(([, measure]) => measure);
+    return [...texts, ...measures].map((text) => text.replaceAll("\\'", "'"));
+  });
 }
 
 /** Returns the names and explanations of the live parameters. */
 function fromParameters(): string[] {
   const proto = readFileSync(join(web, "../proto/phrenic/v1/parameters.proto"), "utf8");
-  return [...proto.matchAll(/\b(?:label|help|\(group\))\s*[:=]\s*((?:"[^"]*"\s*)+)/g)].map(([, quoted]) =>
+  return [...proto.matchAll(/(?:\blabel|\bhelp|\(group\))\s*[:=]\s*((?:"[^"]*"\s*)+)/g)].map(([, quoted]) =>
     [...quoted.matchAll(/"([^"]*)"/g)].map(([, part]) => part).join(""),
   );
 }
@@ -143,7 +150,7 @@ export function keysOfSources(): Set<string> {
     ...files("").flatMap(fromSource),
     ...fromPage("index.html"),
     ...fromPage("offline.html"),
-    ...fromScene(),
+    ...fromScenes(),
     ...fromParameters(),
     ...fromTerminology(),
     ...others,

@@ -73,7 +73,9 @@ function translateElements(root: Element): void {
       const value = element.getAttribute(name);
       if (value !== null) element.setAttribute(name, t(value));
     }
-    for (const node of element.childNodes)
-      if (node.nodeType === Node.TEXT_NODE && node.nodeValue?.trim()) node.nodeValue = t(node.nodeValue.trim());
+    for (const node of element.childNodes) {
+      const text = node.nodeType === Node.TEXT_NODE ? (node.nodeValue ?? "").trim() : "";
+      if (text !== "") node.nodeValue = (node.nodeValue ?? "").replace(text, () => t(text));
+    }
   }
 }

@@ -57,7 +57,7 @@ function unitRow(comparisons: Comparisons): HTMLElement {
 }
 
 function timeRow(comparisons: Comparisons): HTMLElement {
-  const help = "For a motion file: time of the compared state in seconds; empty for the session's time";
+  const help = t("For a motion file: time of the compared state in seconds; empty for the session's time");
   const entry = make("input", {
     type: "number",
     step: "any",

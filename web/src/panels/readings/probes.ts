@@ -23,7 +23,7 @@ export class Probes {
     while (this.rows.rows.length > probes.length) this.rows.deleteRow(-1);
     probes.forEach(({ name, dx, dy, dz }, i) => {
       const row = this.rows.rows[i] ?? this.addRow();
-      [name, ...[dx, dy, dz].map((metres) => fixed(1000 * metres, 1))].forEach((text, k) => {
+      [t(name), ...[dx, dy, dz].map((metres) => fixed(1000 * metres, 1))].forEach((text, k) => {
         const cell = row.cells[k];
         if (cell.textContent !== text) cell.textContent = text;
       });
