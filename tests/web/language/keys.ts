@@ -22,7 +22,7 @@ const tables: Record<string, string[]> = {
   "panels/jobs/export_panel.ts": ["valueNames"],
   "panels/jobs/export_progress.ts": ["verbs"],
   "panels/jobs/studies_panel.ts": ["kinds"],
-  "panels/jobs/take_home.ts": ["filmTitle"],
+  "panels/jobs/take_home.ts": ["filmTitle", "animationTitle"],
   "panels/readings/m_mode_pictures.ts": ["help"],
   "panels/session/banners.ts": ["halvingHelp"],
   "panels/session/compile_report.ts": ["numbers"],

@@ -13,6 +13,11 @@ export function useMessages(all: Messages, tag: string): void {
   decimalSign = parts.find(({ type }) => type === "decimal")?.value ?? ".";
 }
 
+/** Returns the messages that are set. */
+export function usedMessages(): Messages {
+  return messages;
+}
+
 /**
  * Returns the text of the page's language for an English one, with `values` for "{0}", "{1}" ...; the English text if
  * the language has none.

@@ -1,8 +1,10 @@
 import { elementById } from "../dom/elements";
+import { useOwnWords } from "../language/page_words";
 import { readMotion } from "../frames/clip";
 import { MotionPage } from "./page";
 import { t } from "../language/translate";
 
+useOwnWords();
 // The panels are open: the page has no buttons for them.
 document.body.classList.add("graphs-open", "panel-open");
 try {

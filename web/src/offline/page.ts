@@ -5,14 +5,15 @@ import { SceneStructures } from "../app/scene_structures";
 import { LayerStyles } from "../appearance/layer_styles";
 import { elementById, make } from "../dom/elements";
 import { section } from "../dom/rows";
-import { FilmMaker } from "../film/film_maker";
+import { AnimatedPngWriter } from "../film/animated_png";
+import { FilmMaker, type OpenWriter } from "../film/film_maker";
 import { FilmWriter } from "../film/film_writer";
 import { Clip } from "../frames/clip";
 import type { DisplayedFrame } from "../frames/frame_buffer";
 import type { OfflineMotion } from "../gen/phrenic/v1/offline_pb";
 import { CompileReportSchema } from "../gen/phrenic/v1/report_pb";
 import * as simplifier from "../geometry/simplified";
-import { filmButton } from "../panels/jobs/take_home";
+import { animationButton, filmButton } from "../panels/jobs/take_home";
 import { cutRows } from "../panels/view/cut_rows";
 import { layersPanel } from "../panels/view/layers_panel";
 import { Margins } from "../panels/view/margins";
@@ -30,6 +31,8 @@ import { factsSection } from "./facts";
 import { playback, scrubber } from "./playback";
 import { Player } from "./player";
 import { t } from "../language/translate";
+
+const idle = () => new Signal<ExportProgress>({ kind: "idle" });
 
 /** Shows a motion on the page: the scene with its layers, views and cuts, playback, graphs and facts. */
 export class MotionPage {
@@ -115,14 +118,26 @@ export class MotionPage {
 
   private filmSection(): HTMLElement {
     const source = {
-      progress: new Signal<ExportProgress>({ kind: "idle" }),
+      progress: idle(),
       record: async () => this.motion,
       stop: () => undefined,
     };
     const stage = filmStage(this.viewer, undefined, (frame) => (this.filmed = frame));
-    const { go, progress } = filmButton(new FilmMaker(source, stage, (...of) => FilmWriter.open(...of)));
+    const film = filmButton(new FilmMaker(source, stage, (...of) => FilmWriter.open(...of)));
+    const openPng: OpenWriter = (...of) => Promise.resolve(AnimatedPngWriter.open(...of));
+    const animation = animationButton(FilmMaker.ofAnimations({ ...source, progress: idle() }, stage, openPng));
+    const pictures = t("The same as an animated PNG, for pages and messages.");
     const detail = make("p", { className: "faint" }, t("A WebM video of the breath as the view shows it, for slides."));
-    return section(t("A film of this breath"), false, detail, go, progress);
+    return section(
+      t("A film of this breath"),
+      false,
+      detail,
+      film.go,
+      film.progress,
+      make("p", { className: "faint" }, pictures),
+      animation.go,
+      animation.progress,
+    );
   }
 
   private showScene(): void {

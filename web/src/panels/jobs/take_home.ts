@@ -17,7 +17,7 @@ export function takeHomeRow(exports: Exports): HTMLElement {
     progress.querySelector("a")?.click();
   };
   const detail = t("One file that plays the next breath without a network: rotation, views, layers, graphs.");
-  return make("li", {}, make("div", {}, make("b", {}, title), make("span", {}, detail), progress), go);
+  return fileRow(title, detail, go, progress);
 }
 
 type Filming = FileMaking & { start(): Promise<void> };
@@ -28,18 +28,41 @@ export function filmRow(film: Filming): HTMLElement {
   const detail = t(
     "A WebM video of the next breath as the view shows it, for slides: 25 pictures per simulated second.",
   );
-  return make("li", {}, make("div", {}, make("b", {}, t(filmTitle)), make("span", {}, detail), progress), go);
+  return fileRow(t(filmTitle), detail, go, progress);
+}
+
+/** Returns a row with a button that makes an animated picture of the next breath, as a PNG file. */
+export function animationRow(film: Filming): HTMLElement {
+  const { go, progress } = animationButton(film);
+  const detail = t(
+    "An animated PNG of the next breath, up to 640 pixels wide, for pages and messages: 10 pictures per simulated second.",
+  );
+  return fileRow(t(animationTitle), detail, go, progress);
 }
 
 const filmTitle = "A film of this breath";
+const animationTitle = "An animated picture of this breath";
 
 /** Returns a button that makes and saves a film, and its progress. */
 export function filmButton(film: Filming): { go: HTMLElement; progress: HTMLElement } {
-  const go = make("button", { type: "button", id: "film", ariaLabel: t("Save: {0}", t(filmTitle)) }, t("Save"));
-  const progress = exportProgress(film, go, "film");
+  return makingButton(film, "film", t(filmTitle));
+}
+
+/** Returns a button that makes and saves an animated picture, and its progress. */
+export function animationButton(film: Filming): { go: HTMLElement; progress: HTMLElement } {
+  return makingButton(film, "animation", t(animationTitle));
+}
+
+function makingButton(film: Filming, id: string, title: string): { go: HTMLElement; progress: HTMLElement } {
+  const go = make("button", { type: "button", id, ariaLabel: t("Save: {0}", title) }, t("Save"));
+  const progress = exportProgress(film, go, id);
   go.onclick = async () => {
     await film.start();
     progress.querySelector("a")?.click();
   };
   return { go, progress };
+}
+
+function fileRow(title: string, detail: string, go: HTMLElement, progress: HTMLElement): HTMLElement {
+  return make("li", {}, make("div", {}, make("b", {}, title), make("span", {}, detail), progress), go);
 }
