@@ -1,7 +1,7 @@
 import { type Chunk, numbersChunk, readChunks, writeChunks } from "./png_chunks";
 
-/** Largest width of the animation [pixels]: it is for pages and messages, where a film does not play. */
-const maxWidth = 640;
+/** Longest side of the animation [pixels]: it is for pages and messages, where a film does not play. */
+const maxLength = 480;
 
 /**
  * Writes pictures of one canvas to an animated PNG that repeats for ever (PNG specification, third edition, W3C 2025).
@@ -20,7 +20,7 @@ export class AnimatedPngWriter {
 
   /** Returns a writer of animations of the canvas with `rate` pictures per second. Throws Error without memory. */
   static open(source: HTMLCanvasElement, rate: number): AnimatedPngWriter {
-    const scale = Math.min(1, maxWidth / source.width);
+    const scale = Math.min(1, maxLength / Math.max(source.width, source.height));
     const [width, height] = [source.width, source.height].map((length) => Math.round(length * scale));
     const canvas = Object.assign(document.createElement("canvas"), { width, height });
     const pen = canvas.getContext("2d", { alpha: false });

@@ -20,10 +20,10 @@ export function usedMessages(): Messages {
 
 /**
  * Returns the text of the page's language for an English one, with `values` for "{0}", "{1}" ...; the English text if
- * the language has none.
+ * the language has none. What follows " |" in the English text is not shown: it tells texts with two meanings apart.
  */
 export function t(english: string, ...values: (string | number)[]): string {
-  const text = messages[english] ?? english;
+  const text = messages[english] ?? english.split(" |", 1)[0];
   return values.length === 0 ? text : text.replace(/\{(\d)\}/g, (_, i: string) => String(values[Number(i)]));
 }
 

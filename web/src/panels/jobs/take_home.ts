@@ -35,7 +35,7 @@ export function filmRow(film: Filming): HTMLElement {
 export function animationRow(film: Filming): HTMLElement {
   const { go, progress } = animationButton(film);
   const detail = t(
-    "An animated PNG of the next breath, up to 640 pixels wide, for pages and messages: 10 pictures per simulated second.",
+    "An animated PNG of the next breath, up to 480 pixels, for pages and messages: 10 pictures per simulated second.",
   );
   return fileRow(t(animationTitle), detail, go, progress);
 }

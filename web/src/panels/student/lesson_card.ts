@@ -174,7 +174,11 @@ export class LessonCard {
 
   private buttons({ step }: LessonPlace): HTMLElement {
     const last = step === this.lesson?.steps.length;
-    const back = make("button", { type: "button", id: "lesson-back", onclick: () => this.move(-1) }, t("Back"));
+    const back = make(
+      "button",
+      { type: "button", id: "lesson-back", onclick: () => this.move(-1) },
+      t("Back |to the step before"),
+    );
     back.disabled = step === 1;
     const next = make(
       "button",
