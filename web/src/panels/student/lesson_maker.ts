@@ -26,14 +26,17 @@ export class LessonMaker {
   private readonly steps = make("ol", { id: "maker-steps" });
   private readonly words = make("div");
   private readonly lesson: Lesson;
+  private readonly form: StepForm;
 
   /** Starts with a copy of a lesson, or an empty one about `scene`. */
   constructor(making: LessonMaking, scene: string, first?: Lesson) {
     this.lesson = first === undefined ? create(LessonSchema, { scene }) : clone(LessonSchema, first);
     this.title.value = this.lesson.title;
     this.summary.value = this.lesson.summary;
-    const form = new StepForm(making.keep, (step) => {
-      this.lesson.steps.push(step);
+    this.form = new StepForm(making.keep, (step, before) => {
+      const place = before === undefined ? -1 : this.lesson.steps.indexOf(before);
+      if (place < 0) this.lesson.steps.push(step);
+      else this.lesson.steps[place] = step;
       this.showSteps();
     });
     const buttons: [words: string, act: () => void][] = [
@@ -51,7 +54,7 @@ export class LessonMaker {
       labelledRow("maker-title", t("Title"), this.title),
       labelledRow("maker-summary", t("What is learned"), this.summary),
       this.steps,
-      form.element,
+      this.form.element,
       this.words,
       make("div", { className: "maker-buttons" }, ...row),
     );
@@ -81,6 +84,7 @@ export class LessonMaker {
     const { steps } = this.lesson;
     const rows = steps.map((step, i) => {
       const remove = () => {
+        this.form.forget(step);
         steps.splice(i, 1);
         this.showSteps();
       };
@@ -88,7 +92,12 @@ export class LessonMaker {
         steps.splice(i - 1, 2, steps[i], steps[i - 1]);
         this.showSteps();
       };
-      const buttons = [stepButton(t("Remove"), i, remove), ...(i > 0 ? [stepButton(t("Earlier"), i, earlier)] : [])];
+      const change = () => this.form.edit(step);
+      const buttons = [
+        stepButton(t("Change"), i, change),
+        stepButton(t("Remove"), i, remove),
+        ...(i > 0 ? [stepButton(t("Earlier"), i, earlier)] : []),
+      ];
       return make("li", {}, make("span", {}, step.title), ...buttons);
     });
     this.steps.replaceChildren(...rows);
