@@ -6,6 +6,7 @@
 #include "server/mechanics/compile/presets.h"
 #include "server/mechanics/measures/readings.h"
 #include "server/service/calls/idempotent_call.h"
+#include "server/service/calls/peer.h"
 #include "server/service/calls/session_call.h"
 #include "server/service/calls/status.h"
 #include "server/stream/state_arrays.h"
@@ -310,6 +311,19 @@ absl::StatusOr<std::shared_ptr<session::Session>> SessionService::AdmitTeacher(
   return std::move(call->session);
 }
 
+namespace {
+
+// Browsers of an account, and of an address: that of a school, which a class shares. A server without accounts cannot
+// tell the browsers of its own machine from those behind a proxy on it.
+constexpr std::size_t kMostBrowsersOfAccount = 5, kMostBrowsersOfAddress = 60;
+
+session::AnswerSource SourceOf(const access::Caller& caller) {
+  if (caller.known()) return {absl::StrCat("account ", caller.account.name), kMostBrowsersOfAccount};
+  return {caller.peer, IsThisMachine(caller.peer) ? session::kMostRespondents : kMostBrowsersOfAddress};
+}
+
+}  // namespace
+
 grpc::Status SessionService::SubmitAnswer(grpc::CallbackServerContext* context, const v1::SubmitAnswerRequest* request,
                                           v1::SubmitAnswerResponse* response) {
   const auto call = AdmitToSession(guard_, table_, *context, *request);
@@ -317,7 +331,7 @@ grpc::Status SessionService::SubmitAnswer(grpc::CallbackServerContext* context, 
   if (!request->name().empty()) {
     if (absl::Status name = session::CheckName("name", request->name()); !name.ok()) return ToGrpc(name);
   }
-  const auto attempts = call->session->answer_book().Submit(*request);
+  const auto attempts = call->session->answer_book().Submit(*request, SourceOf(call->caller));
   if (!attempts.ok()) return ToGrpc(attempts.status());
   response->set_attempts(*attempts);
   return grpc::Status::OK;

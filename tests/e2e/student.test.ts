@@ -1,7 +1,9 @@
+import { join } from "node:path";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
 import { endAll, startAll, ViewerPage } from "./browser";
-import type { Server } from "./server";
+import { keysOfSources } from "../web/language/keys";
+import { outFolder, type Server } from "./server";
 
 let server: Server;
 let browser: Browser;
@@ -20,16 +22,16 @@ const sizes = [[1440, 900], [1000, 700], [768, 1024], [600, 360], [320, 640]]; /
 const slowly = (viewer: ViewerPage) => viewer.page.selectOption("#speed", "0.25");
 
 /** Pictures of the page at several widths; nothing is cut off at the right. */
-async function picturesOf(viewer: ViewerPage, name: string): Promise<void> {
-  for (const [width, height] of sizes) {
-    await viewer.page.setViewportSize({ width, height });
-    await viewer.page.waitForTimeout(500);
+async function picturesOf(page: ViewerPage["page"], name: string, of = sizes): Promise<void> {
+  for (const [width, height] of of) {
+    await page.setViewportSize({ width, height });
+    await page.waitForTimeout(500);
     const widest = () =>
       Math.max(
         ...[...document.querySelectorAll("#student *, #header *")].map((each) => each.getBoundingClientRect().right),
       );
-    expect(await viewer.page.evaluate(widest)).toBeLessThanOrEqual(width + 1);
-    await viewer.saveScreenshot(`${name}-${width}`);
+    expect(await page.evaluate(widest)).toBeLessThanOrEqual(width + 1);
+    await page.screenshot({ path: join(outFolder, `${name}-${width}.png`) });
   }
 }
 
@@ -47,7 +49,7 @@ test("AClassChoosesABreathAndMovesASlider", async () => {
   await page.locator("#motion-words", { hasText: "paradoxical motion" }).waitFor({ timeout: 60_000 });
   expect(await page.textContent("#student")).not.toMatch(/tick|tensegrity|solver|activation/i);
   expect(await viewer.violations()).toEqual([]);
-  await picturesOf(viewer, "student");
+  await picturesOf(viewer.page, "student");
   await page.setViewportSize({ width: 1440, height: 900 });
   await page.getByLabel("How fast").focus();
   await page.keyboard.press("End");
@@ -99,7 +101,7 @@ test("OneKeyComparesWithHealthAndEndsTheCopy", { timeout: 240_000 }, async () =>
   );
   expect(await page.locator('[data-graph="dome-height"] .key').count()).toBe(4);
   expect(await viewer.violations()).toEqual([]);
-  await picturesOf(viewer, "student-compare");
+  await picturesOf(viewer.page, "student-compare");
   await page.focus("#view");
   await page.keyboard.press("b");
   await page.waitForURL((url) => !url.search.includes("beside"));
@@ -130,4 +132,66 @@ test("ABreathIsPredictedPlayedAndMeasured", async () => {
   await viewer.saveScreenshot("student-prediction");
   expect(viewer.consoleErrors).toEqual([]);
   await viewer.close();
+});
+
+/** A catalogue that marks each text, so that one without a translation stands out. */
+const marked = Object.fromEntries([...keysOfSources()].map((key) => [key, `⟦${key}⟧`]));
+
+/** Texts that are the same in every language: names, and units. */
+const alike = /^(Phrenic|thorax|SVG|CSV|EN|DE|ES|\d+ (fps|mm).*|[\d.,−-]+ (s|mm|Pa))$/;
+
+/** Returns the texts of the page that are seen or spoken and have no mark. */
+function unmarked(): string[] {
+  const found = [...document.body.querySelectorAll("*")].flatMap((element) => {
+    const shown = element.closest("select") ?? element;
+    if (!shown.checkVisibility({ visibilityProperty: true }) || element.closest("script, noscript, svg") !== null)
+      return [];
+    const texts = [...element.childNodes]
+      .filter(({ nodeType }) => nodeType === 3)
+      .map(({ nodeValue }) => nodeValue ?? "");
+    const spoken = ["title", "aria-label", "placeholder"].map((name) => element.getAttribute(name) ?? "");
+    return [...texts, ...(element.tagName === "OPTION" ? [] : spoken)];
+  });
+  return [...new Set(found.map((text) => text.trim()))].filter((text) => /\p{L}{2}/u.test(text) && !text.includes("⟦"));
+}
+
+test("NoTextOfTheStudentViewIsWithoutATranslation", async () => {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, locale: "de-DE" });
+  await context.route("**/languages/de.json", (route) => route.fulfill({ json: marked }));
+  const page = await context.newPage();
+  const left = async () => (await page.evaluate(unmarked)).filter((text) => !alike.test(text));
+  await page.goto(student());
+  await page.locator("#motion-words", { hasText: "⟦" }).waitFor();
+  await page.waitForFunction(() => (window.phrenic?.tick() ?? -1) >= 0);
+  expect(await left()).toEqual([]);
+  for (const dialog of ["share-open", "help-open", "control-badge"]) {
+    await page.click(`#${dialog}`);
+    expect(await left(), dialog).toEqual([]);
+    await page.keyboard.press("Escape");
+  }
+  await page.click("#lessons summary");
+  await page.click("#make-lesson");
+  await page.click("#step-form summary");
+  expect(await left(), "the maker of lessons").toEqual([]);
+  await context.close();
+});
+
+test("TheLanguageIsChosenAndKeptAndNothingIsCutOff", async () => {
+  const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, locale: "es-ES" });
+  const page = await context.newPage();
+  await page.goto(`${server.url}?session=thorax&lesson=paralysis&step=2`);
+  await page.getByRole("heading", { name: "El nervio derecho está cortado" }).waitFor();
+  expect(await page.evaluate(() => document.documentElement.lang)).toBe("es");
+  await page.selectOption("#language", "de");
+  await page.getByRole("heading", { name: "Der rechte Nerv ist durchtrennt" }).waitFor();
+  await page.getByRole("radio", { name: "Der Druck über ihr fällt, und sie kann nicht dagegen ziehen." }).check();
+  await page.getByRole("button", { name: "Prüfen" }).click();
+  await page.getByText("Richtig. Die Lungen ziehen an beiden Kuppeln.").waitFor();
+  await page.locator("#motion-words", { hasText: /um \d+ mm.*\d,\d\d l Luft/ }).waitFor({ timeout: 60_000 });
+  for (const language of ["de", "es"]) {
+    await page.goto(`${student()}&lang=${language}`);
+    await page.waitForFunction(() => (window.phrenic?.tick() ?? -1) >= 0);
+    await picturesOf(page, `student-${language}`, [[320, 640], [768, 1024], [1280, 800]]); // prettier-ignore
+  }
+  await context.close();
 });

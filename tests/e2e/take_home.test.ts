@@ -1,7 +1,9 @@
+import { execFile } from "node:child_process";
 import { statSync } from "node:fs";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
+import { promisify } from "node:util";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
 import { endAll, isComplaint, startAll, ViewerPage } from "./browser";
@@ -111,9 +113,38 @@ test("APageThatWasTakenHomeMakesAFilmWithoutANetwork", async () => {
   const film = await watch(await context.newPage(), await readFile((await file.path())!), [0.02, 0.7]);
   expect(Math.abs(film.duration - breathLength)).toBeLessThan(0.2);
   expect(film.moved[0]).toBeGreaterThan(0.001);
+  const [picture] = await Promise.all([page.waitForEvent("download", { timeout: 100_000 }), page.click("#animation")]);
+  expect(picture.suggestedFilename()).toBe("thorax.png");
+  const animation = join(outFolder, "breath.png");
+  await picture.saveAs(animation);
+  const { frames, seconds, size, moved } = await readAnimation(animation);
+  const megabytes = statSync(animation).size / 1e6;
+  console.log(`animated picture: ${size.join(" x ")}, ${frames} frames, ${seconds} s, ${megabytes.toFixed(2)} MB`);
+  expect(frames).toBe(Math.round(10 * breathLength));
+  expect(Math.abs(seconds - breathLength)).toBeLessThan(0.11);
+  expect(Math.max(...size)).toBeLessThanOrEqual(480);
+  expect(moved).toBe(true);
   expect(complaints).toEqual([]);
   await context.close();
 });
+
+const pillow = `
+import json, sys
+from PIL import Image, ImageChops
+picture = Image.open(sys.argv[1])
+shown = []
+for i in range(picture.n_frames):
+    picture.seek(i)
+    shown.append((picture.info["duration"], picture.convert("RGB")))
+moved = ImageChops.difference(shown[0][1], shown[len(shown) // 2][1]).getbbox() is not None
+print(json.dumps(dict(frames=len(shown), seconds=sum(each for each, _ in shown) / 1000, size=picture.size, moved=moved)))
+`;
+
+/** Reads an animated picture by Pillow (Debian's python3-pil). */
+async function readAnimation(path: string) {
+  const { stdout } = await promisify(execFile)("/usr/bin/python3", ["-c", pillow, path]);
+  return JSON.parse(stdout) as { frames: number; seconds: number; size: number[]; moved: boolean };
+}
 
 /** Returns the number of pages of a PDF file. */
 function pageCount(pdf: Buffer): number {

@@ -109,6 +109,28 @@ TEST(AnswerBook, IsBoundedAndBeginsAgainAfterClear) {
   EXPECT_EQ(book.List("", false).answers(0).respondent(), 1);
 }
 
+TEST(AnswerBook, OneSourceLeavesRoomForOthers) {
+  AnswerBook book;
+  const AnswerSource watcher{"192.0.2.1", 60}, pupil{"192.0.2.2", 60};
+  for (int who = 1; who <= 60; ++who) ASSERT_TRUE(book.Submit(AnswerOf(who, 0, true), watcher).ok());
+  const auto refused = book.Submit(AnswerOf(61, 0, true), watcher);
+  EXPECT_TRUE(absl::IsResourceExhausted(refused.status()));
+  EXPECT_THAT(std::string(refused.status().message()), HasSubstr("60 browsers of this account or address"));
+  EXPECT_TRUE(book.Submit(AnswerOf(60, 1, false, 3), watcher).ok()) << "one that has answered before";
+  EXPECT_TRUE(book.Submit(AnswerOf(100, 0, true), pupil).ok());
+  book.Clear();
+  EXPECT_TRUE(book.Submit(AnswerOf(61, 0, true), watcher).ok());
+}
+
+TEST(AnswerBook, OneRespondentCannotFillTheBook) {
+  AnswerBook book;
+  for (int step = 1; step <= static_cast<int>(kMostAnswersOfOne); ++step)
+    ASSERT_TRUE(book.Submit(AnswerOf(1, 0, true, step)).ok());
+  EXPECT_TRUE(absl::IsResourceExhausted(book.Submit(AnswerOf(1, 0, true, 900)).status()));
+  EXPECT_TRUE(book.Submit(AnswerOf(1, 1, true, 1)).ok()) << "a repeated answer needs no more room";
+  EXPECT_TRUE(book.Submit(AnswerOf(2, 0, true)).ok());
+}
+
 TEST(AnswerBook, AnswersOfManyThreadsAreAllCounted) {
   AnswerBook book;
   std::vector<std::thread> threads;

@@ -8,10 +8,12 @@ import { elementById, make } from "./dom/elements";
 import { SessionChooser } from "./panels/session/session_chooser";
 import { signIn } from "./panels/session/sign_in";
 import { chooseSession } from "./session/choose_session";
-import { lessonPlaceOf } from "./session/lessons";
+import { languageOf, openLanguage } from "./language/language";
+import { fetchJson, lessonPlaceOf } from "./session/lessons";
 import { pageViewOf, withPageView } from "./session/page_view";
 import { recipeOf, rerun } from "./session/permalink";
 import { systemClock } from "./timing/clock";
+import { t } from "./language/translate";
 
 // Requests while the page is closed must outlive it, such as the release of a pulled vertex.
 let leaving = false;
@@ -29,18 +31,20 @@ function address(sessionId: string): string {
   return `?${new URLSearchParams({ session: sessionId })}`;
 }
 
+const here = new URL(location.href);
+await openLanguage(languageOf(here, localStorage, navigator.languages), fetchJson);
+
 const chooser = new SessionChooser(api, (sessionId) => location.assign(address(sessionId)));
 document.body.append(chooser.element);
 
 const loading = elementById("loading");
-const start = make("button", { type: "button", onclick: () => void chooser.show() }, "Start a session");
+const start = make("button", { type: "button", onclick: () => void chooser.show() }, t("Start a session"));
 
 function showWaiting(error?: unknown): void {
-  if (error === undefined) loading.replaceChildren("The server has no session yet. ", start);
-  else loading.replaceChildren(`No answer from the server (${errorText(error)}). Trying again…`);
+  if (error === undefined) loading.replaceChildren(t("The server has no session yet. "), start);
+  else loading.replaceChildren(t("No answer from the server ({0}). Trying again…", errorText(error)));
 }
 
-const here = new URL(location.href);
 storeJoinLink(here, credentials);
 
 /** Returns the session of the address, or runs the simulation that the address describes. */
@@ -48,20 +52,20 @@ async function findSession(): Promise<string> {
   const recipe = recipeOf(here);
   if (recipe === undefined) return chooseSession(here, api, systemClock, showWaiting);
   return rerun(api, recipe, (part) => {
-    loading.replaceChildren(`Running ${recipe.scene} again: ${Math.round(100 * part)} %`);
+    loading.replaceChildren(t("Running {0} again: {1} %", recipe.scene, Math.round(100 * part)));
   });
 }
 
 await signIn(api, credentials, loading);
 const sessionId = await findSession().catch((error: unknown) => {
-  loading.replaceChildren(`The simulation of this link cannot be repeated: ${errorText(error)}. `, start);
+  loading.replaceChildren(t("The simulation of this link cannot be repeated: {0}. ", errorText(error)), start);
   throw error;
 });
 const secondSessionId = here.searchParams.get("beside") ?? undefined;
 // An embedded page shows only the scene and the playback controls.
 const embedded = here.searchParams.has("embed");
 document.body.classList.toggle("embedded", embedded);
-loading.replaceChildren("Loading the scene…");
+loading.replaceChildren(t("Loading the scene…"));
 const view = embedded ? "expert" : pageViewOf(here, localStorage);
 const shown = secondSessionId === undefined && !embedded ? address(sessionId) : here.search;
 const lesson = lessonPlaceOf(here);
@@ -74,7 +78,7 @@ try {
   new App(api, subject, chooser, identity, systemClock).start();
 } catch (error) {
   loading.replaceChildren(
-    "This browser cannot draw the scene: Phrenic needs WebGL 2. Enable hardware acceleration or update the browser.",
+    t("This browser cannot draw the scene: Phrenic needs WebGL 2. Enable hardware acceleration or update the browser."),
   );
   throw error;
 }

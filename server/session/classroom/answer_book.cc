@@ -44,19 +44,39 @@ absl::Status CheckAnswer(const v1::SubmitAnswerRequest& request) {
 
 }  // namespace
 
-absl::StatusOr<int> AnswerBook::Submit(const v1::SubmitAnswerRequest& request) {
+absl::Status AnswerBook::CheckRoom(const Respondent* respondent, const AnswerSource& source) const {
+  if (answers_.size() >= kMostClassAnswers || (respondent == nullptr && respondents_.size() >= kMostRespondents)) {
+    return absl::ResourceExhaustedError(absl::StrCat("the session keeps ", kMostClassAnswers, " answers of ",
+                                                     kMostRespondents, " respondents; delete them to begin again"));
+  }
+  if (respondent != nullptr && respondent->answers >= kMostAnswersOfOne) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("respondent: the session keeps ", kMostAnswersOfOne, " answers of one; change one of these"));
+  }
+  const auto known = sources_.find(source.name);
+  if (respondent == nullptr && known != sources_.end() && known->second >= source.most_respondents) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("respondent: the session keeps the answers of ", source.most_respondents,
+                     " browsers of this account or address; answer in one that has answered before"));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<int> AnswerBook::Submit(const v1::SubmitAnswerRequest& request, const AnswerSource& source) {
   if (absl::Status status = CheckAnswer(request); !status.ok()) return status;
   const absl::MutexLock lock(&mutex_);
   auto found = respondents_.find(request.respondent());
   const int number = found == respondents_.end() ? static_cast<int>(respondents_.size()) + 1 : found->second.number;
   const Key key(request.lesson(), request.step(), request.phase(), number);
-  if (!answers_.contains(key) &&
-      (number > static_cast<int>(kMostRespondents) || answers_.size() >= kMostClassAnswers)) {
-    return absl::ResourceExhaustedError(absl::StrCat("the session keeps ", kMostClassAnswers, " answers of ",
-                                                     kMostRespondents, " respondents; delete them to begin again"));
+  const bool is_new = !answers_.contains(key);
+  if (is_new) {
+    const Respondent* known = found == respondents_.end() ? nullptr : &found->second;
+    if (absl::Status room = CheckRoom(known, source); !room.ok()) return room;
+    if (known == nullptr) ++sources_[source.name];
   }
   Respondent& respondent = respondents_[request.respondent()];
   respondent.number = number;
+  if (is_new) ++respondent.answers;
   if (!request.name().empty()) respondent.name = request.name();
   v1::ClassAnswer& answer = answers_[key];
   if (answer.attempts() == 0) answer.set_first_right(request.right());
@@ -92,6 +112,7 @@ v1::ListAnswersResponse AnswerBook::List(const std::string& lesson, bool include
 void AnswerBook::Clear() {
   const absl::MutexLock lock(&mutex_);
   respondents_.clear();
+  sources_.clear();
   answers_.clear();
 }
 

@@ -82,8 +82,7 @@ absl::Status PageWriter::End(const std::function<absl::Status(double share)>& re
 std::string PageWriter::MakePage(Frames& frames) {
   motion_.mutable_frames()->Swap(&frames);
   frames.Clear();
-  std::string compressed;
-  stream::AppendCompressed(motion_.SerializeAsString(), compressed);
+  const std::string compressed = stream::CompressSmall(motion_.SerializeAsString());
   const std::size_t at = page_.find(kMotionPlace);
   return absl::StrCat(page_.substr(0, at), absl::Base64Escape(compressed), page_.substr(at + kMotionPlace.size()));
 }

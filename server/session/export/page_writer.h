@@ -15,7 +15,7 @@
 namespace phrenic::session {
 
 // A page is at most this large [bytes] if its frames can be encoded within 1 mm.
-inline constexpr std::size_t kPageBytes = 5'000'000;
+inline constexpr std::size_t kPageBytes = 4'900'000;
 
 // Returns the template of a page: the viewer's offline.html. NOT_FOUND if the viewer is not built. Thread-safe.
 absl::StatusOr<std::string> ReadPageTemplate(const std::string& path);

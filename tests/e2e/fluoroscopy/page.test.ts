@@ -185,7 +185,7 @@ test("ASniffOfARightPalsyIsParadoxicalInWords", async () => {
   const [, right, left] = /Right dome (\d+) mm up, left dome (\d+) mm down/.exec(words) ?? [];
   expect(Number(right)).toBeGreaterThan(5);
   expect(Number(left)).toBeGreaterThan(10);
-  expect(words).toContain("The right dome rises while the left one falls: paradoxical");
+  expect(words).toContain("The right dome rises while the left dome falls: paradoxical");
   expect(await page.locator(".fluoroscopy-marks .excursion").count()).toBe(2);
   expect(await student.violations()).toEqual([]);
   await student.saveScreenshot("fluoroscopy-phone");

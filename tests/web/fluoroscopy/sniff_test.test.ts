@@ -54,7 +54,7 @@ test("TheWordsFollowTheNumbers", () => {
   expect(wordsOf({ right: -0.0312, left: -0.0268 })).toMatch(/^Right dome 31 mm down, left dome 27 mm down\. Both domes fall, as in health/); // prettier-ignore
   const palsy = wordsOf({ right: 0.0081, left: -0.03 });
   expect(palsy).toContain("Right dome 8 mm up, left dome 30 mm down.");
-  expect(palsy).toContain("The right dome rises while the left one falls: paradoxical");
+  expect(palsy).toContain("The right dome rises while the left dome falls: paradoxical");
   expect(palsy).toContain("Below 20 mm");
   expect(wordsOf({ right: 0.025, left: -0.03 })).not.toContain("Below 20 mm");
   expect(wordsOf({ right: 0.01, left: 0.012 })).toContain("Both domes rise: paradoxical on both sides.");

@@ -1,4 +1,5 @@
 import terminology from "./terminology.json";
+import { t } from "../language/translate";
 
 /** The name of a structure and its definition in a sentence. */
 export interface Term {
@@ -30,6 +31,7 @@ interface Entry {
   definitions: Record<string, string | undefined>;
 }
 
+/** The terminology, whose texts are those of the catalogues. */
 const entries: Entry[] = terminology.structures;
 const matchers = entries.map(({ body }) => new RegExp(body));
 
@@ -54,10 +56,10 @@ function termOf(entry: Entry, body: string, { number, side }: Record<string, str
   return {
     body,
     region: entry.region ?? "",
-    name: fill(entry.name),
+    name: fill(t(entry.name)),
     latin: fill(entry.latin),
     also: fill(entry.also ?? ""),
-    definition: definitionOf(entry.definitions, Number(number)),
+    definition: t(definitionOf(entry.definitions, Number(number))),
   };
 }
 
@@ -79,7 +81,7 @@ function wordOf(word: string, number: number, side: string): string {
   const latin = side === "right" || side === "left" ? latinSides[side] : { femina: "", genitive: "" };
   const words: Record<string, string | undefined> = {
     ...latin,
-    side,
+    side: t(side),
     Side: upper(side),
     number: String(number),
     ordinal: `${number}${["th", "st", "nd", "rd"][number < 4 ? number : 0]}`,

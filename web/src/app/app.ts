@@ -6,6 +6,7 @@ import { type ConnectionListener, type ConnectionState, SessionConnection } from
 import { download } from "../dom/download";
 import { elementById } from "../dom/elements";
 import { FilmMaker, type OpenWriter } from "../film/film_maker";
+import { inPageLanguage } from "../language/page_words";
 import { recordedMotion } from "../film/recorded_motion";
 import { type DisplayedFrame, FrameBuffer } from "../frames/frame_buffer";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
@@ -18,7 +19,7 @@ import { ComparisonCard } from "../panels/comparison/comparison_card";
 import { distancePanel } from "../panels/comparison/distance_panel";
 import { presetComparison } from "../panels/comparison/preset_comparison";
 import { exportPanel } from "../panels/jobs/export_panel";
-import { filmRow, takeHomeRow } from "../panels/jobs/take_home";
+import { animationRow, filmRow, takeHomeRow } from "../panels/jobs/take_home";
 import { studiesPanel } from "../panels/jobs/studies_panel";
 import { uploadPanel } from "../panels/jobs/upload_panel";
 import { parameterSections } from "../panels/parameters/parameter_sections";
@@ -30,6 +31,7 @@ import { compileReportPanel } from "../panels/session/compile_report";
 import { ConnectionBadge, ViewerCount } from "../panels/session/connection_badge";
 import { controlBadge, ControlDialog, controlledGroup } from "../panels/session/control_dialog";
 import { encodingPanel } from "../panels/session/encoding_panel";
+import { languageMenu } from "../panels/session/language_menu";
 import { sessionButton } from "../panels/session/session_button";
 import type { SessionChooser } from "../panels/session/session_chooser";
 import { ShareDialog } from "../panels/session/share_dialog";
@@ -72,6 +74,8 @@ const graphInterval = 100;
 
 /** The encoder is loaded with the first film. */
 const openWriter: OpenWriter = async (...of) => (await import("../film/film_writer")).FilmWriter.open(...of);
+
+const openAnimation: OpenWriter = async (...of) => (await import("../film/animated_png")).AnimatedPngWriter.open(...of);
 
 /** What the page shows, from its address. */
 export interface PageTarget {
@@ -319,7 +323,12 @@ export class App {
     };
     const stage = filmStage(viewer, this.tools.coloring, (frame) => (this.filmed = frame));
     const film = new FilmMaker(recordedMotion(new Exports(this.api, sessionId)), stage, openWriter);
-    const rows = [takeHomeRow(new Exports(this.api, sessionId)), filmRow(film)];
+    const animation = FilmMaker.ofAnimations(recordedMotion(new Exports(this.api, sessionId)), stage, openAnimation);
+    const rows = [
+      takeHomeRow(new Exports(this.api, sessionId, undefined, inPageLanguage)),
+      filmRow(film),
+      animationRow(animation),
+    ];
     const share = new ShareDialog({ controller, report, open, photograph: () => void photograph(), rows });
     const { graphs, panel } = drawers(() => this.resize(), this.secondView !== undefined);
     const press = (id: string) => () => document.getElementById(id)?.click();
@@ -383,6 +392,7 @@ export class App {
     document.body.append(share.element, keys, control.element);
     elementById("share-open").onclick = () => share.show();
     elementById("help-open").onclick = () => keys.showModal();
+    elementById("help-open").before(languageMenu(localStorage, this.target.open));
     elementById("status-slot").append(
       controlBadge(this.participation, () => control.show()),
       this.viewers.element,

@@ -1,11 +1,12 @@
 import { make } from "../dom/elements";
+import { t } from "../language/translate";
 
 /** Accepts files that are dropped anywhere on the page, and shows a hint while a file is dragged over it. */
 export function dropZone(page: HTMLElement, take: (file: File) => void): HTMLElement {
   const words = make(
     "div",
     { className: "drop-zone", hidden: true },
-    make("p", {}, "Drop the file to compare with it"),
+    make("p", {}, t("Drop the file to compare with it")),
   );
   words.setAttribute("aria-hidden", "true");
   page.addEventListener("dragover", (event) => {

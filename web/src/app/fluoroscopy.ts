@@ -9,6 +9,7 @@ import type { SessionController } from "../session/session_controller";
 import type { Signal } from "../state/signal";
 import { drawsInSoftware } from "../viewer/quality";
 import type { Viewer } from "../viewer/viewer";
+import { t } from "../language/translate";
 
 /** What the fluoroscopy acts on. */
 export interface FluoroscopyParts {
@@ -25,11 +26,11 @@ export interface FluoroscopyParts {
 
 /** The button that opens the picture by X-rays over the 3D view; its code is loaded then. */
 export class Fluoroscopy {
-  readonly button = make("button", { type: "button", id: "fluoroscopy-open", hidden: true }, "X-ray");
+  readonly button = make("button", { type: "button", id: "fluoroscopy-open", hidden: true }, t("X-ray"));
   private shown: Fluoroscope | undefined;
 
   constructor(private readonly parts: FluoroscopyParts) {
-    this.button.title = "Fluoroscopy: the breathing thorax as X-rays show it (X)";
+    this.button.title = t("Fluoroscopy: the breathing thorax as X-rays show it (X)");
     this.button.onclick = () => void this.toggle();
   }
 

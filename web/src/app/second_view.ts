@@ -21,6 +21,7 @@ import type { Annotations } from "../viewer/annotations";
 import { Viewer, type ViewerHost } from "../viewer/viewer";
 import { namedAnnotations } from "./named_scene";
 import type { SceneTools } from "./scene_tools";
+import { t } from "../language/translate";
 
 /** Two playing sessions that differ by more than this [s] for this many checks are synchronised again. */
 const maxTimeDifference = 0.2;
@@ -68,7 +69,7 @@ export class SecondView {
     private readonly clock: Clock,
     actions: { swap(): void; close(): void },
   ) {
-    const canvas = make("canvas", { role: "img", ariaLabel: `3D view of the session ${sessionId}` });
+    const canvas = make("canvas", { role: "img", ariaLabel: t("3D view of the session {0}", sessionId) });
     this.controller = new SessionController(api, sessionId, clock);
     primary.controller.companion = this.controller;
     primary.frames.synchroniseWith(this.frames);

@@ -1,4 +1,5 @@
 import { make } from "../dom/elements";
+import { t } from "../language/translate";
 
 /** A key, its description, and its action. */
 export interface Shortcut {
@@ -20,17 +21,17 @@ const pointerGestures: [key: string, words: string][] = [
 
 /** Handles keys outside of inputs and dialogs. Returns the dialog that lists them. */
 export function shortcuts(all: Shortcut[], undo: () => void, redo: () => void): HTMLDialogElement {
-  const dialog = make("dialog", { className: "chooser", id: "help", ariaLabel: "Keys and gestures" });
-  const close = make("button", { type: "button", onclick: () => dialog.close() }, "Close");
+  const dialog = make("dialog", { className: "chooser", id: "help", ariaLabel: t("Keys and gestures") });
+  const close = make("button", { type: "button", onclick: () => dialog.close() }, t("Close"));
   const help: Shortcut = { key: "?", description: "Show this list", run: () => dialog.showModal() };
   const keys = [...all, help];
   const rows = [
     ...keys.map(({ key, description }) => [key === " " ? "Space" : key.toUpperCase(), description]),
     ...pointerGestures,
   ];
-  const list = rows.flatMap(([key, words]) => [make("dt", {}, make("kbd", {}, key)), make("dd", {}, words)]);
+  const list = rows.flatMap(([key, words]) => [make("dt", {}, make("kbd", {}, t(key))), make("dd", {}, t(words))]);
   dialog.append(
-    make("header", {}, make("h2", {}, "Keys and gestures"), close),
+    make("header", {}, make("h2", {}, t("Keys and gestures")), close),
     make("dl", { className: "keys-list" }, ...list),
   );
   document.addEventListener("keydown", (event) => {

@@ -29,6 +29,7 @@ import { TimeSeries } from "../state/time_series";
 import { keptLessonView, showLessonView, whenShown } from "./lesson_scene";
 import type { SceneTools } from "./scene_tools";
 import type { SecondView } from "./second_view";
+import { t } from "../language/translate";
 
 /** Duration that is kept [simulated s]. */
 const kept = 60;
@@ -181,7 +182,7 @@ export class StudentView {
   /** The active preset of the second session. */
   private get besideLabel(): string {
     const { presets, secondView } = this.parts;
-    return activeLabel(presets.value, secondView?.session.value?.parameters) ?? "second view";
+    return activeLabel(presets.value, secondView?.session.value?.parameters) ?? t("second view");
   }
 
   /** Sets the parameters of a step, if this viewer may, and shows its view. */
@@ -205,8 +206,8 @@ export class StudentView {
   private show(view: PageView): void {
     document.body.classList.toggle("student", view === "student");
     const toggle = elementById("view-toggle");
-    toggle.textContent = view === "student" ? "Expert" : "Student";
-    toggle.title = view === "student" ? "Show every control (E)" : "Plain words and few controls (E)";
+    toggle.textContent = view === "student" ? t("Expert") : t("Student");
+    toggle.title = view === "student" ? t("Show every control (E)") : t("Plain words and few controls (E)");
     this.parts.resized();
   }
 

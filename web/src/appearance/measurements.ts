@@ -5,6 +5,7 @@ import { Placement } from "../gen/phrenic/v1/frames_pb";
 import type { GraphSpec } from "../graphs/catalogue";
 import { Signal } from "../state/signal";
 import { TimeSeries } from "../state/time_series";
+import { fixed, t } from "../language/translate";
 
 /** A tool: the distance of two points, the angle at the second of three, or the surface of the structure at one. */
 export type MeasureTool = "distance" | "angle" | "surface";
@@ -139,7 +140,7 @@ export class Measurements {
       const measured = this.all.value.filter(({ id }) => history.series.has(String(id)));
       const [unit, factor] = units[what];
       const curves = measured.map(({ id, name }) => ({ key: String(id), name, factor, order: id }));
-      const spec = { id: `measured-${what}`, title: `Measured ${what}`, unit, curves };
+      const spec = { id: `measured-${what}`, title: t("Measured {0}", t(what)), unit, curves };
       return curves.length === 0 ? [] : [{ spec, history }];
     });
   }
@@ -154,8 +155,8 @@ export function quantityText(what: Quantity, value: number): string {
   const [unit, factor] = units[what];
   const shown = factor * value;
   if (!Number.isFinite(shown)) return "undefined";
-  if (what === "area" && shown < 1) return `${(100 * shown).toFixed(1)} mm²`;
-  return `${shown.toFixed(shown >= 1000 ? 0 : 1)}${what === "angle" ? "" : " "}${unit}`;
+  if (what === "area" && shown < 1) return `${fixed(100 * shown, 1)} mm²`;
+  return `${fixed(shown, shown >= 1000 ? 0 : 1)}${what === "angle" ? "" : " "}${unit}`;
 }
 
 /** Returns the triangles of which all vertices are among these. */

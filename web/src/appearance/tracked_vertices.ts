@@ -4,6 +4,7 @@ import type { GraphSpec } from "../graphs/catalogue";
 import { curveColor } from "../graphs/colors";
 import { Signal } from "../state/signal";
 import { TimeSeries } from "../state/time_series";
+import { t } from "../language/translate";
 
 const maxTracked = 6;
 const pickedColor = "#ffffff";
@@ -85,7 +86,7 @@ export class TrackedVertices {
   private change(refs: VertexRef[]): void {
     const curves = refs.map((ref) => ({ key: vertexLabel(ref), name: vertexLabel(ref), factor: 1000 }));
     this.graph =
-      refs.length === 0 ? undefined : { id: "tracked", title: "Tracked vertices: displacement", unit: "mm", curves };
+      refs.length === 0 ? undefined : { id: "tracked", title: t("Tracked vertices: displacement"), unit: "mm", curves };
     this.history.clear();
     this.tracked.set(refs);
   }

@@ -1,9 +1,10 @@
 import { button, make } from "./elements";
 import { icon } from "./icons";
+import { lower, t } from "../language/translate";
 
 /** Returns a button that resets the control with this label. */
 export function resetButton(label: string, onclick: () => void): HTMLButtonElement {
-  const reset = button(`Reset ${label.toLowerCase()}`, onclick, icon("undo"));
+  const reset = button(t("Reset {0}", lower(label)), onclick, icon("undo"));
   reset.className = "quiet";
   return reset;
 }

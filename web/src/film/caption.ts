@@ -1,5 +1,6 @@
 import type { ColorScale } from "../appearance/color_scale";
 import { captionHeight } from "./layout";
+import { decimal, fixed, t } from "../language/translate";
 
 /** What the caption of a film says. */
 export interface Caption {
@@ -29,13 +30,13 @@ export function drawCaption(
   pen.textBaseline = "middle";
   const clock = Math.min(90, width / 4);
   write(pen, title, margin, top + 21, { font: `600 19px ${family}`, room: width - 2 * margin - clock });
-  write(pen, `${time.toFixed(2)} s`, width - margin, top + 21, {
+  write(pen, `${fixed(time, 2)} s`, width - margin, top + 21, {
     font: `600 19px ${family}`,
     room: clock,
     right: true,
   });
   const half = (width - 2 * margin) / 2;
-  write(pen, disclaimer, width - margin, top + 46, { font: `13px ${family}`, room: half - gap, right: true });
+  write(pen, t(disclaimer), width - margin, top + 46, { font: `13px ${family}`, room: half - gap, right: true });
   if (colors !== undefined) drawScale(pen, colors, top + 46, half);
 }
 
@@ -47,7 +48,7 @@ function drawScale(
 ): void {
   const bar = Math.min(barWidth, room / 3);
   const style = { font: `13px ${family}`, room: (room - bar - 2 * gap) / 2 };
-  const words = `${label}  ${scale.low}`;
+  const words = `${label}  ${decimal(String(scale.low))}`;
   write(pen, words, margin, y, style);
   const left = margin + Math.min(pen.measureText(words).width, style.room) + gap;
   for (let x = 0; x < bar; x++) {
@@ -55,7 +56,7 @@ function drawScale(
     pen.fillRect(left + x, y - 5, 1.5, 10);
   }
   pen.fillStyle = "#f1f4f7";
-  write(pen, `${scale.top} ${scale.unit}`, left + bar + gap, y, style);
+  write(pen, `${decimal(String(scale.top))} ${scale.unit}`, left + bar + gap, y, style);
 }
 
 function write(

@@ -3,8 +3,9 @@ import type { OfflineMotion } from "../gen/phrenic/v1/offline_pb";
 import { motionTitle } from "../parameters/presets";
 import type { ExportProgress } from "../session/exports";
 import { Signal } from "../state/signal";
-import { filmRate, filmTimes } from "./layout";
+import { animationRate, filmRate, filmTimes } from "./layout";
 import { type FilmStage, Pictures } from "./pictures";
+import { t } from "../language/translate";
 
 /** Takes the pictures of a film and makes its file. */
 export interface PictureWriter {
@@ -25,6 +26,9 @@ export interface MotionSource {
   stop(): void;
 }
 
+/** The stages that draw a film now. */
+const busy = new WeakSet<FilmStage>();
+
 /**
  * Makes a film of a breath: the view draws its motion frame by frame at the film's rate, however long a drawing takes.
  * One film at a time.
@@ -38,10 +42,16 @@ export class FilmMaker {
     private readonly stage: FilmStage,
     private readonly open: OpenWriter,
     private readonly supported: () => boolean = () => typeof VideoEncoder !== "undefined",
+    private readonly format = { extension: "webm", rate: filmRate },
   ) {
     source.progress.subscribe((work) => {
       if (["recording", "fetching", "failed"].includes(work.kind)) this.progress.set(work);
     });
+  }
+
+  /** Returns a maker of animated pictures (PNG), which every browser can make. */
+  static ofAnimations(source: MotionSource, stage: FilmStage, open: OpenWriter): FilmMaker {
+    return new FilmMaker(source, stage, open, () => true, { extension: "png", rate: animationRate });
   }
 
   /** Records and films a breath; cancels a film that is being made and releases the one before. */
@@ -53,13 +63,14 @@ export class FilmMaker {
     try {
       const motion = await this.source.record();
       if (motion === undefined || signal.aborted) return;
-      const film = await this.film(motion, `${motion.scene}.webm`, signal);
+      const file = `${motion.scene}.${this.format.extension}`;
+      const film = await this.film(motion, file, signal);
       if (film === undefined || signal.aborted) return;
       const url = URL.createObjectURL(film);
-      this.progress.set({ kind: "ready", file: `${motion.scene}.webm`, size: film.size, url });
+      this.progress.set({ kind: "ready", file, size: film.size, url });
     } catch (error) {
       const reason = error instanceof Error ? error.message : String(error);
-      if (!signal.aborted) this.progress.set({ kind: "failed", message: `The film cannot be made: ${reason}.` });
+      if (!signal.aborted) this.progress.set({ kind: "failed", message: t("The film cannot be made: {0}.", reason) });
     }
   }
 
@@ -72,8 +83,11 @@ export class FilmMaker {
   }
 
   private refusal(): string | undefined {
+    if (busy.has(this.stage)) return t("Another film of this view is being made: wait for it, or stop it.");
     if (this.supported()) return this.stage.refusal();
-    return "This browser has no video encoder (WebCodecs) here: use a current Chrome, Edge, Firefox or Safari, and open this page by https or on the server's own machine (localhost).";
+    return t(
+      "This browser has no video encoder (WebCodecs) here: use a current Chrome, Edge, Firefox or Safari, and open this page by https or on the server's own machine (localhost).",
+    );
   }
 
   /** Returns the file; undefined if it is cancelled. */
@@ -82,10 +96,11 @@ export class FilmMaker {
     const { scene, preset } = motionTitle(motion);
     const title = preset === "" ? scene : `${scene} · ${preset}`;
     const pictures = new Pictures(this.stage, { title, colors: this.stage.colors() });
-    const writer = await this.open(pictures.canvas, filmRate);
+    const writer = await this.open(pictures.canvas, this.format.rate);
     pictures.begin();
+    busy.add(this.stage);
     try {
-      const times = filmTimes(clip.length);
+      const times = filmTimes(clip.length, this.format.rate);
       for (const [i, time] of times.entries()) {
         pictures.take({ time: motion.frames[0].time + time, arrays: clip.at(time) }, time);
         await writer.add();
@@ -95,6 +110,7 @@ export class FilmMaker {
       return await writer.finish();
     } finally {
       writer.cancel();
+      busy.delete(this.stage);
       this.stage.end();
     }
   }

@@ -1,5 +1,7 @@
 /** Frames per simulated second of a film. */
 export const filmRate = 25;
+/** The same of an animated picture, whose file has every picture whole. */
+export const animationRate = 10;
 /** Largest width and height of a film, and height of the caption below the picture [pixels]. */
 const maxWidth = 1280;
 const maxHeight = 720;
@@ -24,8 +26,8 @@ export function filmLayout(width: number, height: number): FilmLayout {
   return { width: even(width), height: pictureHeight + captionHeight, pictureHeight, scale };
 }
 
-/** Returns the times of the frames of a film of `length` [s]: from 0, equally spaced, before the end. */
-export function filmTimes(length: number): number[] {
-  const count = Math.max(1, Math.round(length * filmRate));
-  return Array.from({ length: count }, (_, i) => Math.min(i / filmRate, length));
+/** Returns the times of the frames of a film of `length` [s]: from 0, `rate` a second, before the end. */
+export function filmTimes(length: number, rate = filmRate): number[] {
+  const count = Math.max(1, Math.round(length * rate));
+  return Array.from({ length: count }, (_, i) => Math.min(i / rate, length));
 }

@@ -4,6 +4,7 @@ import { Signal } from "../state/signal";
 import { angleName, type CArm, standardProjections } from "./c_arm";
 import { explanation } from "./explanation";
 import type { Tone } from "./gpu_projection";
+import { decimal, fixed, t } from "../language/translate";
 
 /** What the controls set. */
 export interface Settings {
@@ -28,13 +29,13 @@ export function pictureControls(settings: Settings): HTMLElement[] {
 }
 
 function projections(arm: Signal<CArm>): HTMLElement {
-  const group = make("div", { className: "projections", role: "group", ariaLabel: "Projection" });
+  const group = make("div", { className: "projections", role: "group", ariaLabel: t("Projection") });
   const buttons = standardProjections.map(({ name, words, lao, cranial }) => {
     const onclick = () => arm.set({ ...arm.value, lao, cranial });
-    return make("button", { type: "button", title: words, onclick }, name);
+    return make("button", { type: "button", title: t(words), onclick }, t(name));
   });
   arm.subscribe((now) => {
-    for (const each of buttons) each.ariaPressed = String(each.textContent === angleName(now));
+    for (const each of buttons) each.ariaPressed = String(each.textContent === t(angleName(now)));
   });
   group.append(...buttons);
   return group;
@@ -46,24 +47,24 @@ function angles(arm: Signal<CArm>): HTMLElement {
   const [sideWords, tiltWords] = [make("output"), make("output")];
   arm.subscribe(({ lao, cranial }) => {
     [side.value, tilt.value] = [String(lao), String(cranial)];
-    sideWords.value = angleName({ lao, cranial: 0 });
-    tiltWords.value = cranial === 0 ? "level" : `${cranial > 0 ? "cranial" : "caudal"} ${Math.abs(cranial)}°`;
+    sideWords.value = t(angleName({ lao, cranial: 0 }));
+    tiltWords.value = cranial === 0 ? t("level") : `${cranial > 0 ? t("cranial") : t("caudal")} ${Math.abs(cranial)}°`;
     side.setAttribute("aria-valuetext", sideWords.value);
     tilt.setAttribute("aria-valuetext", tiltWords.value);
   });
-  const rows = [sliderRow("RAO – LAO", side, sideWords), sliderRow("Caudal – cranial", tilt, tiltWords)];
+  const rows = [sliderRow(t("RAO – LAO"), side, sideWords), sliderRow(t("Caudal – cranial"), tilt, tiltWords)];
   return make("div", { className: "fluoroscopy-rows" }, ...rows);
 }
 
 function rays(arm: Signal<CArm>): HTMLElement {
-  const list = make("select", { id: "fluoroscopy-rays", title: "Distance from the source to the detector" });
-  list.append(...distances.map(([at, words]) => make("option", { value: String(at) }, words)));
+  const list = make("select", { id: "fluoroscopy-rays", title: t("Distance from the source to the detector") });
+  list.append(...distances.map(([at, words]) => make("option", { value: String(at) }, decimal(t(words)))));
   list.onchange = () => {
     const chosen = distances.find(([at]) => String(at) === list.value);
     arm.set({ ...arm.value, sourceToDetector: chosen?.[0] });
   };
   arm.subscribe(({ sourceToDetector }) => (list.value = String(sourceToDetector)));
-  return labelledRow(list.id, "Source to detector", list);
+  return labelledRow(list.id, t("Source to detector"), list);
 }
 
 /** Centre and width of the window, as radiologists set grey, in powers of e of the transmitted intensity. */
@@ -75,15 +76,15 @@ function grey({ window, darkBones, domes }: Settings): HTMLElement {
   window.subscribe((now) => {
     if (now === undefined) return;
     [centre.value, width.value] = [String((now.low + now.high) / 2), String(now.high - now.low)];
-    [centreWords.value, widthWords.value] = [Number(centre.value).toFixed(1), Number(width.value).toFixed(1)];
+    [centreWords.value, widthWords.value] = [fixed(Number(centre.value), 1), fixed(Number(width.value), 1)];
   });
-  const automatic = make("button", { type: "button", onclick: () => window.set(undefined) }, "Automatic grey");
-  const dark = switchRow("Bones dark", "Dark where little passes, as on a fluorescent screen", (on) =>
+  const automatic = make("button", { type: "button", onclick: () => window.set(undefined) }, t("Automatic grey"));
+  const dark = switchRow(t("Bones dark"), t("Dark where little passes, as on a fluorescent screen"), (on) =>
     darkBones.set(on),
   );
-  const marked = switchRow("Mark the domes", "A line at the highest point of each dome", (on) => domes.set(on));
+  const marked = switchRow(t("Mark the domes"), t("A line at the highest point of each dome"), (on) => domes.set(on));
   domes.subscribe((on) => (marked.input.checked = on));
-  const rows = [sliderRow("Window centre", centre, centreWords), sliderRow("Window width", width, widthWords)];
+  const rows = [sliderRow(t("Window centre"), centre, centreWords), sliderRow(t("Window width"), width, widthWords)];
   return make("div", { className: "fluoroscopy-rows" }, ...rows, dark.row, marked.row, automatic);
 }
 
@@ -99,5 +100,5 @@ function sliderRow(label: string, input: HTMLInputElement, words: HTMLOutputElem
 
 /** Returns the folded text that says what the picture is made of. */
 export function explanationSection(open: string[]): HTMLElement {
-  return make("details", {}, make("summary", {}, "What absorbs, and limits"), ...explanation(open));
+  return make("details", {}, make("summary", {}, t("What absorbs, and limits")), ...explanation(open));
 }

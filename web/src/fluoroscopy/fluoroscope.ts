@@ -11,6 +11,7 @@ import { drawMarks } from "./marks";
 import { type SniffActions, SniffPanel } from "./sniff_panel";
 import { svg } from "./svg";
 import { paintSums, windowOf } from "./tone";
+import { fixed, t } from "../language/translate";
 
 /** Pixels of the picture each way: on a graphics card, where the processor draws for it, and where it computes all. */
 const [fine, coarse, plain] = [768, 448, 144];
@@ -35,7 +36,7 @@ export interface FluoroscopeParts {
 
 /** A live projection of the scene by X-rays over the 3D view. */
 export class Fluoroscope {
-  readonly element = make("section", { id: "fluoroscopy", ariaLabel: "Fluoroscopy" });
+  readonly element = make("section", { id: "fluoroscopy", ariaLabel: t("Fluoroscopy") });
   private readonly canvas = make("canvas", { id: "fluoroscopy-picture", tabIndex: 0, role: "img" });
   private readonly overlay = svg("svg", { viewBox: "-1 -1 2 2", "aria-hidden": "true", class: "fluoroscopy-marks" });
   private readonly density = make("p", { id: "lung-density", className: "faint" });
@@ -68,11 +69,11 @@ export class Fluoroscope {
   private build(): void {
     const close = make(
       "button",
-      { type: "button", id: "fluoroscopy-close", title: "Back to the 3D view (X)" },
-      "Close",
+      { type: "button", id: "fluoroscopy-close", title: t("Back to the 3D view (X)") },
+      t("Close"),
     );
     close.onclick = () => this.parts.close();
-    const heading = make("header", {}, make("h2", {}, "Fluoroscopy"), close);
+    const heading = make("header", {}, make("h2", {}, t("Fluoroscopy")), close);
     const sniff = this.sniff === undefined ? [] : [this.sniff.element];
     const rest = [...pictureControls(this.settings), this.density, explanationSection(this.absorbers.open)];
     const controls = make(
@@ -84,7 +85,7 @@ export class Fluoroscope {
       ...rest,
     );
     controls.role = "group";
-    controls.ariaLabel = "Controls of the fluoroscopy";
+    controls.ariaLabel = t("Controls of the fluoroscopy");
     const picture = make("div", { className: "fluoroscopy-frame" }, this.canvas);
     picture.append(this.overlay);
     this.element.append(picture, controls);
@@ -168,7 +169,10 @@ export class Fluoroscope {
   /** An automatic window follows the projection. */
   private changeArm(): void {
     const { arm, window } = this.settings;
-    this.canvas.ariaLabel = `X-ray-like projection of the thorax, ${angleName(arm.value)}. Arrow keys turn the C-arm.`;
+    this.canvas.ariaLabel = t(
+      "X-ray-like projection of the thorax, {0}. Arrow keys turn the C-arm.",
+      t(angleName(arm.value)),
+    );
     if (!this.manual) window.set(undefined);
     this.parts.redraw();
   }
@@ -195,8 +199,8 @@ export class Fluoroscope {
     if (performance.now() - this.texts < textInterval) return;
     this.texts = performance.now();
     const words = (name: string) => name.replace(/^lung-(right|left)$/, "$1 lung");
-    const sides = this.absorbers.lungs.map(({ name, density }) => `${words(name)} ${density.toFixed(3)}`);
-    this.density.textContent = sides.length === 0 ? "" : `Density now [g/cm³]: ${sides.join(", ")}.`;
+    const sides = this.absorbers.lungs.map(({ name, density }) => `${words(name)} ${fixed(density, 3)}`);
+    this.density.textContent = sides.length === 0 ? "" : t("Density now [g/cm³]: {0}.", sides.join(", "));
     this.sniff?.draw();
   }
 }

@@ -4,6 +4,7 @@ import { sniffPlot } from "./sniff_plot";
 import { domeColors } from "./sniff_plot";
 import { type DomeHeights, type SniffResult, SniffTest, sniffWords } from "./sniff_test";
 import { svg } from "./svg";
+import { t } from "../language/translate";
 
 /** What a sniff test does to the session. */
 export interface SniffActions {
@@ -18,11 +19,11 @@ export interface SniffActions {
 /** The sniff test: a button, both domes over time, and the result in words. */
 export class SniffPanel {
   readonly element = make("div", { className: "sniff" });
-  private readonly run = make("button", { type: "button", id: "sniff-run", className: "primary" }, "Sniff test");
+  private readonly run = make("button", { type: "button", id: "sniff-run", className: "primary" }, t("Sniff test"));
   private readonly back = make(
     "button",
     { type: "button", id: "sniff-back", hidden: true },
-    "Back to the breath before",
+    t("Back to the breath before"),
   );
   private readonly words = make("p", { id: "sniff-result", role: "status" });
   private readonly plot = make("div", { className: "sniff-figure", hidden: true });
@@ -33,7 +34,7 @@ export class SniffPanel {
     private readonly actions: SniffActions,
     private readonly shown: () => void,
   ) {
-    this.run.title = "PA view, a sharp sniff, and how far each dome moves";
+    this.run.title = t("PA view, a sharp sniff, and how far each dome moves");
     this.run.onclick = () => void this.begin();
     this.back.onclick = () => void this.end();
     this.element.append(make("div", { className: "sniff-acts" }, this.run, this.back), this.words, this.plot);
@@ -49,7 +50,7 @@ export class SniffPanel {
     this.words.textContent = refusal;
     if (refusal !== "") return;
     this.shown();
-    this.words.textContent = "Waiting for the next sniff…";
+    this.words.textContent = t("Waiting for the next sniff…");
     this.back.hidden = this.plot.hidden = false;
     this.test = undefined;
     await this.actions.start();
@@ -76,7 +77,7 @@ export class SniffPanel {
     const key = (["right", "left"] as const).map((side) => {
       const line = svg("svg", { viewBox: "0 0 18 8", class: "sniff-key", "aria-hidden": "true" });
       line.append(svg("line", { x1: 0, x2: 18, y1: 4, y2: 4, stroke: domeColors[side], "stroke-width": 3 }));
-      return make("span", {}, line, `${side} dome`);
+      return make("span", {}, line, t(`${side} dome`));
     });
     this.plot.replaceChildren(
       sniffPlot(this.test.heights, this.result),

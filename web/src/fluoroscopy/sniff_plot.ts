@@ -1,5 +1,6 @@
 import type { DomeHeights, SniffResult } from "./sniff_test";
 import { svg } from "./svg";
+import { t } from "../language/translate";
 
 /** Size of the plot, and the room of its axes [CSS pixels]. */
 const [width, height, axis, foot] = [288, 132, 34, 18];
@@ -26,7 +27,7 @@ export function sniffPlot(heights: DomeHeights[], result: SniffResult | undefine
     plot.append(svg("line", { class: tick === 0 ? "zero" : "grid", x1: axis, x2: width, y1: y(tick), y2: y(tick) }));
     plot.append(svg("text", { x: axis - 5, y: y(tick) + 4, "text-anchor": "end" }, String(tick)));
   }
-  plot.append(svg("text", { x: width, y: height - 4, "text-anchor": "end" }, `height [mm], last ${span} s`)); // prettier-ignore
+  plot.append(svg("text", { x: width, y: height - 4, "text-anchor": "end" }, t("height [mm], last {0} s", span))); // prettier-ignore
   for (const [values, color] of [
     [right, domeColors.right],
     [left, domeColors.left],

@@ -1,3 +1,4 @@
+import { fixed, t } from "../language/translate";
 /** The height of each dome above rest [m], and the breath's signal (0 at rest, 1 at its peak), at one time [s]. */
 export interface DomeHeights {
   time: number;
@@ -90,34 +91,39 @@ const lowest = 16;
 /** Returns the millimetres of a dome in words: "right dome 31 mm down". */
 export function domeWords(side: string, change: number): string {
   const mm = Math.round(1000 * Math.abs(change));
-  return `${side} dome ${mm === 0 ? "does not move" : `${mm} mm ${change < 0 ? "down" : "up"}`}`;
+  const words = mm === 0 ? "{0} does not move" : change < 0 ? "{0} {1} mm down" : "{0} {1} mm up";
+  return t(words, t(`${side} dome`), mm);
 }
 
 /** Returns the result in words: both excursions, and what they mean by published limits. */
 export function sniffWords({ right, left, sniffs, gap }: Omit<SniffResult, "onset" | "before">): string {
   const sides = [["right", 1000 * right], ["left", 1000 * left]] as const; // prettier-ignore
   const numbers = sides.map(([side, mm]) => domeWords(side, mm / 1000)).join(", ");
-  const of = sniffs > 1 ? ` (the most of ${sniffs} sniffs)` : "";
-  const missed = gap > sparse ? ` Frames are ${gap.toFixed(2)} s apart here, so that peaks may be larger.` : "";
+  const of = sniffs > 1 ? t(" (the most of {0} sniffs)", sniffs) : "";
+  const missed = gap > sparse ? t(" Frames are {0} s apart here, so that peaks may be larger.", fixed(gap, 2)) : "";
   return `${numbers.charAt(0).toUpperCase()}${numbers.slice(1)}${of}. ${meaning(sides)}${missed}`;
 }
 
 function meaning(sides: readonly (readonly [side: string, mm: number])[]): string {
   const rising = sides.filter(([, mm]) => mm > paradoxical);
-  if (rising.length === 2) return `Both domes rise: paradoxical on both sides.${remark(rising)}`;
+  if (rising.length === 2) return t("Both domes rise: paradoxical on both sides.") + remark(rising);
   if (rising.length === 1) {
     const [[side]] = rising;
     const other = sides.find(([name]) => name !== side)!;
-    const beside = other[1] < -paradoxical ? `while the ${other[0]} one falls` : `and the ${other[0]} one hardly moves`;
-    return `The ${side} dome rises ${beside}: paradoxical, as when its phrenic nerve is cut.${remark(rising)}`;
+    const falls = other[1] < -paradoxical;
+    const words = falls
+      ? "The {0} rises while the {1} falls: paradoxical, as when its phrenic nerve is cut."
+      : "The {0} rises and the {1} hardly moves: paradoxical, as when its phrenic nerve is cut.";
+    return t(words, t(`${side} dome`), t(`${other[0]} dome`)) + remark(rising);
   }
   const weak = sides.filter(([, mm]) => mm > -lowest).map(([side]) => side);
-  if (weak.length === 0) return "Both domes fall, as in health (29 ± 6 mm in men, 26 ± 5 mm in women).";
-  const which = weak.length === 2 ? "Both domes fall" : `The ${weak[0]} dome falls`;
-  return `${which} by less than ${lowest} mm, the lower limit of healthy women: reduced, not paradoxical.`;
+  if (weak.length === 0) return t("Both domes fall, as in health (29 ± 6 mm in men, 26 ± 5 mm in women).");
+  const both = "Both domes fall by less than {0} mm, the lower limit of healthy women: reduced, not paradoxical.";
+  const one = "The {1} falls by less than {0} mm, the lower limit of healthy women: reduced, not paradoxical.";
+  return t(weak.length === 2 ? both : one, lowest, t(`${weak[0]} dome`));
 }
 
 /** Alexander, Clin Radiol 1966;17:79. */
 function remark(rising: readonly (readonly [string, number])[]): string {
-  return rising.every(([, mm]) => mm < 20) ? " Below 20 mm it is also seen in healthy people (Alexander 1966)." : "";
+  return rising.every(([, mm]) => mm < 20) ? t(" Below 20 mm it is also seen in healthy people (Alexander 1966).") : "";
 }

@@ -1,5 +1,6 @@
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { displayUnit } from "./units";
+import { t } from "../language/translate";
 
 /** A curve of a graph: the key of its values, and the factor from SI to the unit of the graph. */
 export interface Curve {
@@ -69,8 +70,8 @@ function byUnit({ measures }: Frame, unit: string, title: string, together: bool
     .map(({ name }) => curve(measureKey(name), name, factor));
   if (curves.length === 0) return [];
   if (together && curves.length > 1)
-    return [{ id: title.toLowerCase(), title: `${title}s`.replace(/ys$/, "ies"), unit: familiar, curves }];
-  return curves.map((each) => ({ id: each.key, title: capital(each.name), unit: familiar, curves: [each] }));
+    return [{ id: title.toLowerCase(), title: t(`${title}s`.replace(/ys$/, "ies")), unit: familiar, curves }];
+  return curves.map((each) => ({ id: each.key, title: capital(t(each.name)), unit: familiar, curves: [each] }));
 }
 
 /** Pressure-volume loop: the enclosed area is work. */

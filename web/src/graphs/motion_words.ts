@@ -1,3 +1,4 @@
+import { afterColon, fixed, t } from "../language/translate";
 import type { BreathMotion } from "./breath_motion";
 
 /** Smaller changes of a dome [mm] and smaller breaths [l] are reported as no motion. */
@@ -24,28 +25,32 @@ export interface NamedMotion {
 export function motionWords(motion: BreathMotion, other?: NamedMotion): string {
   const words = [domeWords(motion), airWords(motion, other?.motion)];
   const domes = other === undefined ? "" : domeWords(other.motion);
-  if (other !== undefined && domes !== "") words.push(`${capitalised(other.label)}: ${uncapitalised(domes)}`);
+  if (other !== undefined && domes !== "") words.push(`${capitalised(other.label)}: ${afterColon(domes)}`);
   return words.filter((each) => each !== "").join(" ");
 }
 
 function airWords({ tidalVolume }: BreathMotion, other: BreathMotion | undefined): string {
-  const litres = (cubicMetres: number) => (1000 * cubicMetres).toFixed(2);
-  if (1000 * tidalVolume < leastLitres) return "No air moves.";
-  const instead = other === undefined ? "" : ` instead of ${litres(other.tidalVolume)}`;
-  return `A breath brings ${litres(tidalVolume)} l of air${instead}.`;
+  const litres = (cubicMetres: number) => fixed(1000 * cubicMetres, 2);
+  if (1000 * tidalVolume < leastLitres) return t("No air moves.");
+  if (other === undefined) return t("A breath brings {0} l of air.", litres(tidalVolume));
+  return t("A breath brings {0} l of air instead of {1}.", litres(tidalVolume), litres(other.tidalVolume));
 }
 
 function domeWords({ tidalVolume, domes }: BreathMotion): string {
   if (1000 * tidalVolume < leastLitres || domes.length === 0) return "";
   const moves = domes.map(moveOf);
-  if (moves.length !== 2) return moves.map((move) => `The ${move.name} ${phrase(move)}.`).join(" ");
+  if (moves.length !== 2) return moves.map((move) => t("The {0} {1}.", t(move.name), phrase(move))).join(" ");
   const [first, second] = moves;
-  const paradoxical = moves.some(({ way }) => way === "rises") ? ": paradoxical motion" : "";
-  if (first.way !== second.way)
-    return `The ${first.name} ${phrase(first)} while the ${side(second)} ${phrase(second)}${paradoxical}.`;
-  if (first.way === "hardly moves") return "Both domes hardly move.";
-  const verb = first.way === "rises" ? "rise" : "fall";
-  return `Both domes ${verb}, the ${side(first)} by ${first.millimetres} mm and the ${side(second)} by ${second.millimetres}${paradoxical}.`;
+  const paradoxical = moves.some(({ way }) => way === "rises") ? t(": paradoxical motion") : "";
+  if (first.way !== second.way) {
+    const words = "The {0} {1} while the {2} {3}{4}.";
+    return t(words, t(first.name), phrase(first), side(second), phrase(second), paradoxical);
+  }
+  if (first.way === "hardly moves") return t("Both domes hardly move.");
+  const rise = "Both domes rise, the {0} by {1} mm and the {2} by {3}{4}.";
+  const fall = "Both domes fall, the {0} by {1} mm and the {2} by {3}{4}.";
+  const [words, numbers] = [first.way === "rises" ? rise : fall, [first.millimetres, second.millimetres]];
+  return t(words, side(first), numbers[0], side(second), numbers[1], paradoxical);
 }
 
 function moveOf({ name, change }: BreathMotion["domes"][number]): Move {
@@ -55,15 +60,13 @@ function moveOf({ name, change }: BreathMotion["domes"][number]): Move {
 }
 
 function phrase({ way, millimetres }: Move): string {
-  return way === "hardly moves" ? way : `${way} by ${millimetres} mm`;
+  if (way === "hardly moves") return t("hardly moves");
+  return t(way === "rises" ? "rises by {0} mm" : "falls by {0} mm", millimetres);
 }
 
-const side = ({ name }: Move) => name.replace(/ dome$/, "");
+/** Returns the name of a dome without the noun: "right". */
+const side = ({ name }: Move) => t(name).replace(t("dome"), "").trim();
 
 function capitalised(words: string): string {
   return words.charAt(0).toUpperCase() + words.slice(1);
-}
-
-function uncapitalised(words: string): string {
-  return words.charAt(0).toLowerCase() + words.slice(1);
 }

@@ -3,6 +3,7 @@ import "uplot/dist/uPlot.min.css";
 import type { GraphSpec } from "./catalogue";
 import { curveColor } from "./colors";
 import { type GraphData, type TimeSpan, valueRange } from "./window";
+import { decimal } from "../language/translate";
 
 /** Events of a plot. */
 export interface PlotEvents {
@@ -67,6 +68,8 @@ export class Plot {
     x: uPlot.Scale,
     y: uPlot.Scale,
   ): Pick<uPlot.Options, "width" | "height" | "legend" | "axes" | "scales"> {
+    // Ticks have few digits; uPlot would write them in the browser's language.
+    const values = (_: uPlot, ticks: number[]) => ticks.map((each) => decimal(String(Number(each.toPrecision(6)))));
     const axis = { stroke: faint, grid, ticks: { show: false }, font, gap: 4 };
     return {
       width: 300,
@@ -74,8 +77,8 @@ export class Plot {
       legend: { show: false },
       scales: { x: { ...x, time: false }, y },
       axes: [
-        { ...axis, size: 20, space: 46 },
-        { ...axis, size: 44, space: 24 },
+        { ...axis, size: 20, space: 46, values },
+        { ...axis, size: 44, space: 24, values },
       ],
     };
   }

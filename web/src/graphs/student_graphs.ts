@@ -3,6 +3,7 @@ import { type TimeSeries, valueAt } from "../state/time_series";
 import type { MotionKeys } from "./breath_motion";
 import { domeHeights, graphsOf, type GraphSpec } from "./catalogue";
 import { cmH2O } from "./units";
+import { t } from "../language/translate";
 
 /** Returns the graphs of the student view: lung volume, and the height of the domes and the pressure around the lungs. */
 export function studentGraphs(frame: Frame): { volume: GraphSpec | undefined; others: GraphSpec[] } {
@@ -44,7 +45,7 @@ const besideKey = (key: string) => `beside ${key}`;
 /** Returns a graph with a dashed curve of the session beside for each curve. */
 export function besideGraph(spec: GraphSpec, here: string, beside: string): GraphSpec {
   const single = spec.curves.length === 1;
-  const name = (who: string, curve: string) => (single ? who : `${curve}, ${who}`);
+  const name = (who: string, curve: string) => (single ? who : `${t(curve)}, ${who}`);
   const first = spec.curves.map((curve, order) => ({ ...curve, name: name(here, curve.name), order }));
   const second = spec.curves.map(({ key, name: curve, factor }, order) => {
     return { key: besideKey(key), name: name(beside, curve), factor, order, dashed: true };

@@ -3,6 +3,7 @@ import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { graphsOf, valuesOf } from "../graphs/catalogue";
 import { GraphTile } from "../panels/readings/graph_tile";
 import { TimeSeries } from "../state/time_series";
+import { t } from "../language/translate";
 
 /** The graphs of a whole motion, with a line at the displayed time. */
 export class BreathGraphs {
@@ -18,7 +19,7 @@ export class BreathGraphs {
     frames.forEach((frame, i) => this.history.add(times[i], valuesOf(frame)));
     const events = { zoom: () => undefined, resume: () => undefined, cursor: () => undefined };
     this.tiles = graphsOf(frames[0]).map((spec) => new GraphTile(spec, this.history, () => fileName, events));
-    this.element.append(make("h2", { className: "unseen" }, "Graphs"), ...this.tiles.map(({ element }) => element));
+    this.element.append(make("h2", { className: "unseen" }, t("Graphs")), ...this.tiles.map(({ element }) => element));
   }
 
   /** Draws the curves; to be called when the graphs are in the page. */

@@ -1,7 +1,10 @@
 import { elementById } from "../dom/elements";
+import { useOwnWords } from "../language/page_words";
 import { readMotion } from "../frames/clip";
 import { MotionPage } from "./page";
+import { t } from "../language/translate";
 
+useOwnWords();
 // The panels are open: the page has no buttons for them.
 document.body.classList.add("graphs-open", "panel-open");
 try {
@@ -10,7 +13,7 @@ try {
   const reason = error instanceof Error ? error.message : String(error);
   elementById("loading").textContent =
     error instanceof RangeError
-      ? `This file is damaged (${reason}): export it again.`
-      : `This browser cannot draw the scene (${reason}): the page needs WebGL 2.`;
+      ? t("This file is damaged ({0}): export it again.", reason)
+      : t("This browser cannot draw the scene ({0}): the page needs WebGL 2.", reason);
   throw error;
 }

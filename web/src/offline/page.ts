@@ -5,14 +5,15 @@ import { SceneStructures } from "../app/scene_structures";
 import { LayerStyles } from "../appearance/layer_styles";
 import { elementById, make } from "../dom/elements";
 import { section } from "../dom/rows";
-import { FilmMaker } from "../film/film_maker";
+import { AnimatedPngWriter } from "../film/animated_png";
+import { FilmMaker, type OpenWriter } from "../film/film_maker";
 import { FilmWriter } from "../film/film_writer";
 import { Clip } from "../frames/clip";
 import type { DisplayedFrame } from "../frames/frame_buffer";
 import type { OfflineMotion } from "../gen/phrenic/v1/offline_pb";
 import { CompileReportSchema } from "../gen/phrenic/v1/report_pb";
 import * as simplifier from "../geometry/simplified";
-import { filmButton } from "../panels/jobs/take_home";
+import { animationButton, filmButton } from "../panels/jobs/take_home";
 import { cutRows } from "../panels/view/cut_rows";
 import { layersPanel } from "../panels/view/layers_panel";
 import { Margins } from "../panels/view/margins";
@@ -29,6 +30,9 @@ import { BreathGraphs } from "./breath_graphs";
 import { factsSection } from "./facts";
 import { playback, scrubber } from "./playback";
 import { Player } from "./player";
+import { t } from "../language/translate";
+
+const idle = () => new Signal<ExportProgress>({ kind: "idle" });
 
 /** Shows a motion on the page: the scene with its layers, views and cuts, playback, graphs and facts. */
 export class MotionPage {
@@ -86,7 +90,7 @@ export class MotionPage {
 
   private buildTexts(): void {
     const { scene, preset } = motionTitle(this.motion);
-    document.title = preset === "" ? `${scene} – Phrenic` : `${scene}, ${preset.toLowerCase()} – Phrenic`;
+    document.title = preset === "" ? t("{0} – Phrenic", scene) : t("{0}, {1} – Phrenic", scene, preset.toLowerCase());
     elementById("motion-title").textContent = scene;
     elementById("motion-preset").textContent = preset;
   }
@@ -108,20 +112,32 @@ export class MotionPage {
 
   private buildPanels(): void {
     elementById("graphs").append(this.graphs.element);
-    const cuts = section("Cut", false, ...cutRows(this.cut, (cut) => this.viewer.cutCoordinate(cut)));
+    const cuts = section(t("Cut"), false, ...cutRows(this.cut, (cut) => this.viewer.cutCoordinate(cut)));
     elementById("panel").append(factsSection(this.motion), layersPanel(this.layerStyles), cuts, this.filmSection());
   }
 
   private filmSection(): HTMLElement {
     const source = {
-      progress: new Signal<ExportProgress>({ kind: "idle" }),
+      progress: idle(),
       record: async () => this.motion,
       stop: () => undefined,
     };
     const stage = filmStage(this.viewer, undefined, (frame) => (this.filmed = frame));
-    const { go, progress } = filmButton(new FilmMaker(source, stage, (...of) => FilmWriter.open(...of)));
-    const detail = make("p", { className: "faint" }, "A WebM video of the breath as the view shows it, for slides.");
-    return section("A film of this breath", false, detail, go, progress);
+    const film = filmButton(new FilmMaker(source, stage, (...of) => FilmWriter.open(...of)));
+    const openPng: OpenWriter = (...of) => Promise.resolve(AnimatedPngWriter.open(...of));
+    const animation = animationButton(FilmMaker.ofAnimations({ ...source, progress: idle() }, stage, openPng));
+    const pictures = t("The same as an animated PNG, for pages and messages.");
+    const detail = make("p", { className: "faint" }, t("A WebM video of the breath as the view shows it, for slides."));
+    return section(
+      t("A film of this breath"),
+      false,
+      detail,
+      film.go,
+      film.progress,
+      make("p", { className: "faint" }, pictures),
+      animation.go,
+      animation.progress,
+    );
   }
 
   private showScene(): void {

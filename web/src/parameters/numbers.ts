@@ -1,4 +1,5 @@
 import type { NumberControl } from "./controls";
+import { decimal, t } from "../language/translate";
 
 /** Returns the slider position of `value`. */
 export function sliderPosition(control: NumberControl, value: number): number {
@@ -19,9 +20,9 @@ function decimalsOf(step: number): number {
 /** Returns an error message if `value` is out of range; otherwise undefined. */
 export function rangeError(control: NumberControl, value: number): string | undefined {
   if (Number.isFinite(value) && value >= control.minimum && value <= control.maximum) return undefined;
-  return `${control.label} must be between ${formatNumber(control.minimum)} and ${formatNumber(control.maximum)}${
-    control.unit ? " " + control.unit : ""
-  }.`;
+  const unit = control.unit ? ` ${control.unit}` : "";
+  const [low, high] = [control.minimum, control.maximum].map((each) => decimal(formatNumber(each)));
+  return t("{0} must be between {1} and {2}.", t(control.label), low, high + unit);
 }
 
 /** Formats at most four significant digits, without trailing zeros. */

@@ -2,10 +2,11 @@ import type { OfflineMotion } from "../gen/phrenic/v1/offline_pb";
 import { type Parameters, ParametersSchema } from "../gen/phrenic/v1/parameters_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import type { ParameterName } from "./controls";
+import { t } from "../language/translate";
 
 /** Returns the title, or the name as words if there is none: "paralysis-right" as "Paralysis right". */
 export function presetLabel({ name, title }: Preset): string {
-  return title || name.charAt(0).toUpperCase() + name.slice(1).replaceAll("-", " ");
+  return t(title) || name.charAt(0).toUpperCase() + name.slice(1).replaceAll("-", " ");
 }
 
 /** Returns the presets by group, in the order in which the scene names the groups first. */
@@ -29,7 +30,7 @@ export function activeLabel(presets: Preset[], parameters: Parameters | undefine
 /** Returns the title of a motion: that of its scene, and the preset if one is active. */
 export function motionTitle(motion: OfflineMotion): { scene: string; preset: string } {
   const active = activePreset(motion.presets, motion.parameters);
-  return { scene: motion.sceneTitle || motion.scene, preset: active === undefined ? "" : presetLabel(active) };
+  return { scene: t(motion.sceneTitle) || motion.scene, preset: active === undefined ? "" : presetLabel(active) };
 }
 
 /** True if all parameters that the preset sets have its values. */

@@ -51,6 +51,8 @@ export class Exports {
     private readonly api: Api,
     private readonly sessionId: string,
     private readonly pause = 1000,
+    /** Changes each file before it is offered. */
+    private readonly finished: (file: Blob) => Blob | Promise<Blob> = (file) => file,
   ) {}
 
   /** Changes some settings of the next export. */
@@ -79,7 +81,7 @@ export class Exports {
     this.progress.set({ kind: "recording", file: "", done: 0, secondsLeft: undefined });
     try {
       const job = await this.record(signal);
-      const file = await this.fetch(job, signal);
+      const file = await this.finished(await this.fetch(job, signal));
       if (signal.aborted) return undefined;
       this.progress.set({ kind: "ready", file: job.fileName, size: file.size, url: URL.createObjectURL(file) });
       return file;

@@ -1,6 +1,9 @@
 import type { JsonValue } from "@bufbuild/protobuf";
 import type { Lesson, LessonStep, LessonView, Question } from "../gen/phrenic/v1/lesson_pb";
+import { pageLanguage } from "../language/language";
+import type { Messages } from "../language/translate";
 import { readLesson } from "./lesson_file";
+import { withWords } from "./lesson_words";
 
 /** A place in a lesson: the name of its file and the number of a step from 1. */
 export interface LessonPlace {
@@ -23,10 +26,15 @@ export async function lessonNames(fetchFile: FetchJson): Promise<string[]> {
   return (await fetchFile("lessons/index.json")) as string[];
 }
 
-/** Returns a lesson by the name of its file. Throws Error for an unknown name, field or value. */
+/** Returns a lesson by the name of its file, in the language of the page. Throws Error for an unknown name, field or value. */
 export async function loadLesson(name: string, fetchFile: FetchJson): Promise<Lesson> {
   if (!/^[a-z0-9-]+$/.test(name)) throw new Error(`lesson: "${name}" is not a name of letters a-z, digits and "-"`);
-  return readLesson(`lessons/${name}.json`, await fetchFile(`lessons/${name}.json`));
+  const lesson = readLesson(`lessons/${name}.json`, await fetchFile(`lessons/${name}.json`));
+  const language = pageLanguage();
+  if (language === "en") return lesson;
+  // A lesson that is not translated is played in English.
+  const words = await fetchFile(`languages/${language}/${name}.json`).catch(() => ({}));
+  return withWords(lesson, words as Messages);
 }
 
 /** The scene of a session, and the names that the views of its lessons may use. */

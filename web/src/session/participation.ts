@@ -5,6 +5,7 @@ import { type Control, ControlPolicy, ControlSchema } from "../gen/phrenic/v1/co
 import { Signal } from "../state/signal";
 import type { Clock } from "../timing/clock";
 import type { SessionController } from "./session_controller";
+import { t } from "../language/translate";
 
 /** Renewal interval of the participation [ms]; the server removes participants after `timeToLive` [s]. */
 const renewalInterval = 10_000;
@@ -43,13 +44,15 @@ export function rolesOf(control: Control | undefined, ownName: string): Roles {
 
 /** Returns "You control", "Anna controls" or "Everyone controls". */
 export function controlLabel({ control, hasControl }: Roles): string {
-  if (hasControl) return "You control";
-  return control?.controller ? `${control.controller} controls` : "Everyone controls";
+  if (hasControl) return t("You control");
+  return control?.controller ? t("{0} controls", control.controller) : t("Everyone controls");
 }
 
 /** Returns why this viewer's controls are disabled; empty if they are enabled. */
 export function refusalReason({ control, mayChange }: Roles): string {
-  return mayChange ? "" : `${control?.controller} controls this session: ask for control, or fork it under "Share".`;
+  return mayChange
+    ? ""
+    : t("{0} controls this session: ask for control, or fork it under “Share”.", control?.controller ?? "");
 }
 
 /**

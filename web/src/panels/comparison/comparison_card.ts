@@ -4,10 +4,11 @@ import { alertMessage, switchRow } from "../../dom/rows";
 import type { Comparison, ComparisonProgress, Comparisons } from "../../session/comparisons";
 import { Legend } from "../view/legend";
 import { distanceTable } from "./distance_table";
+import { fixed, t } from "../../language/translate";
 
 /** A card with the progress and the result of a comparison, and its colour scale. */
 export class ComparisonCard {
-  readonly element = make("section", { id: "comparison", className: "card", ariaLabel: "Distance to a surface" });
+  readonly element = make("section", { id: "comparison", className: "card", ariaLabel: t("Distance to a surface") });
   private readonly progressElement = make("div", { className: "job" });
   private readonly resultElement = make("div", { className: "result" });
   private readonly timeNote = make("p", { className: "faint", id: "comparison-time" });
@@ -24,9 +25,9 @@ export class ComparisonCard {
   show(time: number | undefined): void {
     const result = this.comparisons.result.value;
     const elsewhere = result !== undefined && time !== undefined && time !== result.time;
-    const now = `at ${time?.toFixed(2)} s now`;
-    const follows = `Colours show the session ${now}; “Repeat” updates the table.`;
-    const words = elsewhere ? (result.surface === undefined ? `The session is ${now}.` : follows) : "";
+    const now = t("at {0} s now", fixed(time ?? 0, 2));
+    const follows = t("Colours show the session {0}; “Repeat” updates the table.", now);
+    const words = elsewhere ? (result.surface === undefined ? t("The session is {0}.", now) : follows) : "";
     if (this.timeNote.textContent !== words) this.timeNote.textContent = words;
   }
 
@@ -38,18 +39,18 @@ export class ComparisonCard {
   }
 
   private showRunning(file: string, done: number): void {
-    const bar = make("progress", { max: 1, ariaLabel: "Progress of the comparison" });
+    const bar = make("progress", { max: 1, ariaLabel: t("Progress of the comparison") });
     // A progress bar without a value is indeterminate.
     if (done > 0) bar.value = done;
-    const stop = make("button", { type: "button", onclick: () => this.comparisons.stop() }, "Stop");
-    const words = make("p", {}, "Comparing with ", make("b", {}, file), "…");
+    const stop = make("button", { type: "button", onclick: () => this.comparisons.stop() }, t("Stop"));
+    const words = make("p", {}, t("Comparing with "), make("b", {}, file), "…");
     words.setAttribute("role", "status");
     this.progressElement.replaceChildren(words, make("div", { className: "row" }, bar, stop));
   }
 
   private showFailure(failure: string): void {
     const words = alertMessage(failure);
-    const dismiss = make("button", { type: "button", onclick: () => this.comparisons.stop() }, "Dismiss");
+    const dismiss = make("button", { type: "button", onclick: () => this.comparisons.stop() }, t("Dismiss"));
     this.progressElement.replaceChildren(words, make("div", { className: "row" }, dismiss));
   }
 
@@ -62,7 +63,7 @@ export class ComparisonCard {
     const figures = make(
       "details",
       { open: this.tableOpen },
-      make("summary", {}, "Distances"),
+      make("summary", {}, t("Distances")),
       distanceTable(result.distance),
     );
     figures.ontoggle = () => (this.tableOpen = figures.open);
@@ -74,7 +75,7 @@ export class ComparisonCard {
   private drawnRow({ file, surface }: Comparison): HTMLElement[] {
     if (surface === undefined) return [];
     const { surfaceVisible } = this.comparisons;
-    const { row, input } = switchRow("Show the surface", `${file}, yellow and translucent`, (on) =>
+    const { row, input } = switchRow(t("Show the surface"), t("{0}, yellow and translucent", file), (on) =>
       surfaceVisible.set(on),
     );
     input.id = "compare-drawn";
@@ -83,16 +84,16 @@ export class ComparisonCard {
   }
 
   private heading({ file, body, time, tick }: Comparison): HTMLElement[] {
-    const when = `${body} at ${time.toFixed(3)} s, tick ${tick}`;
+    const when = t("{0} at {1} s, tick {2}", body, fixed(time, 3), String(tick));
     const words = make("p", { className: "faint", id: "comparison-when" }, when);
-    return [make("h2", {}, "Distance to ", make("b", {}, file)), words];
+    return [make("h2", {}, t("Distance to "), make("b", {}, file)), words];
   }
 
   private buttons(): HTMLElement {
-    const title = "Compare the current state with the same file";
-    const again = make("button", { type: "button", id: "compare-repeat", title }, "Repeat");
+    const title = t("Compare the current state with the same file");
+    const again = make("button", { type: "button", id: "compare-repeat", title }, t("Repeat"));
     again.onclick = () => void this.comparisons.repeat();
-    const clear = make("button", { type: "button", id: "compare-clear" }, "Clear");
+    const clear = make("button", { type: "button", id: "compare-clear" }, t("Clear"));
     clear.onclick = () => this.comparisons.clear();
     return make("div", { className: "row" }, again, clear);
   }

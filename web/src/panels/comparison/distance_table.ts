@@ -2,6 +2,7 @@ import { getOption } from "@bufbuild/protobuf";
 import { make } from "../../dom/elements";
 import { type SurfaceDistance, SurfaceDistanceSchema } from "../../gen/phrenic/v1/compare_pb";
 import { quantity } from "../../gen/phrenic/v1/options_pb";
+import { fixed } from "../../language/translate";
 
 /** Measures by their names in the schema: body to file, file to body, and both. */
 const rows: [label: string, names: (string | undefined)[]][] = [
@@ -19,7 +20,7 @@ const heads: [head: string, title: string][] = [
 /** Formats three decimals, one for 100 mm and more; "none" for NaN. */
 export function formatMillimetres(value: number): string {
   if (Number.isNaN(value)) return "none";
-  return value.toFixed(value < 100 ? 3 : 1);
+  return fixed(value, value < 100 ? 3 : 1);
 }
 
 /** Returns a table of the measures of a comparison [mm] with their names in the schema. */

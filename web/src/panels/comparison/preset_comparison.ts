@@ -4,6 +4,7 @@ import type { Preset } from "../../gen/phrenic/v1/scene_pb";
 import { activePreset, presetGroups, presetLabel } from "../../parameters/presets";
 import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
+import { t } from "../../language/translate";
 
 /**
  * A list of the scene's presets. Selecting one opens a copy of the session with this preset in a second view, or sets
@@ -14,8 +15,8 @@ export function presetComparison(
   presets: Signal<Preset[]>,
   open: (query: string) => void,
 ): HTMLElement {
-  const list = make("select", { id: "compare-with", title: "Opens a second view with this preset" });
-  const row = labelledRow("compare-with", "Compare with", list);
+  const list = make("select", { id: "compare-with", title: t("Opens a second view with this preset") });
+  const row = labelledRow("compare-with", t("Compare with"), list);
   row.id = "compare-with-row";
   const { companion, sessionId } = controller;
   list.onchange = async () => {
@@ -31,7 +32,7 @@ export function presetComparison(
   };
   presets.subscribe((all) => {
     row.hidden = all.length === 0;
-    const none = make("option", { value: "", disabled: true }, companion === undefined ? "Choose…" : "Custom");
+    const none = make("option", { value: "", disabled: true }, companion === undefined ? t("Choose…") : t("Custom"));
     list.replaceChildren(none, ...[...presetGroups(all)].flatMap(([name, members]) => presetOptions(name, members)));
     mark();
   });
@@ -42,7 +43,7 @@ export function presetComparison(
 /** The options of a group of presets, below its name unless that is empty. */
 function presetOptions(group: string, members: Preset[]): HTMLElement[] {
   const options = members.map((each) =>
-    make("option", { value: each.name, title: each.description }, presetLabel(each)),
+    make("option", { value: each.name, title: t(each.description) }, presetLabel(each)),
   );
-  return group === "" ? options : [make("optgroup", { label: group }, ...options)];
+  return group === "" ? options : [make("optgroup", { label: t(group) }, ...options)];
 }

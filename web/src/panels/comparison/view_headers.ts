@@ -6,6 +6,7 @@ import { differences, shortDifferences } from "../../parameters/differences";
 import { activeLabel } from "../../parameters/presets";
 import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
+import { fixed, t } from "../../language/translate";
 
 /** Smallest time difference between the views that is shown [s]. */
 const maxTimeDifference = 0.05;
@@ -21,7 +22,7 @@ export class ViewHeaders {
   /** The names of the active presets; otherwise the session ids. */
   private readonly names = [make("b"), make("b")];
   private readonly times = [make("span", { className: "time" }), make("span", { className: "time" })];
-  private readonly domes = [0, 1].map(() => make("span", { className: "domes", title: domeHelp }));
+  private readonly domes = [0, 1].map(() => make("span", { className: "domes", title: t(domeHelp) }));
   private readonly differences = make("span", { className: "differences" });
 
   constructor(
@@ -29,7 +30,7 @@ export class ViewHeaders {
     private readonly presets: Signal<Preset[]>,
     actions: Actions,
   ) {
-    const steered = make("span", { className: "faint", title: "The controls act on this session" }, "active");
+    const steered = make("span", { className: "faint", title: t("The controls act on this session") }, t("active"));
     const viewHeaders = [[steered], buttons(pair[1].sessionId, actions)].map((extra, i) =>
       make("div", { className: "view-header", title: pair[i].sessionId }, this.names[i], this.times[i], ...extra),
     );
@@ -44,13 +45,13 @@ export class ViewHeaders {
   update(frames: [Frame | undefined, Frame | undefined]): void {
     const [here, there] = frames.map((frame) => frame?.time ?? 0);
     frames.forEach((frame, i) => (this.domes[i].textContent = domeLabel(frame)));
-    this.times[0].textContent = `${here.toFixed(2)} s`;
+    this.times[0].textContent = `${fixed(here, 2)} s`;
     const timeDifference = there - here;
     const words =
       Math.abs(timeDifference) < maxTimeDifference
         ? ""
-        : `, ${Math.abs(timeDifference).toFixed(1)} s ${timeDifference > 0 ? "ahead" : "behind"}`;
-    this.times[1].textContent = `${there.toFixed(2)} s${words}`;
+        : t(timeDifference > 0 ? ", {0} s ahead" : ", {0} s behind", fixed(Math.abs(timeDifference), 1));
+    this.times[1].textContent = `${fixed(there, 2)} s${words}`;
   }
 
   private compare(): void {
@@ -58,7 +59,7 @@ export class ViewHeaders {
     this.pair.forEach(({ session, sessionId }, i) => {
       this.names[i].textContent = activeLabel(this.presets.value, session.value?.parameters) ?? sessionId;
     });
-    this.differences.textContent = shortDifferences(here, there) || "Same parameters";
+    this.differences.textContent = shortDifferences(here, there) || t("Same parameters");
     this.differences.title = differences(here, there);
   }
 }
@@ -67,8 +68,8 @@ function buttons(sessionId: string, { swap, close }: Actions): HTMLElement[] {
   const button = (words: string, title: string, onclick: () => void) =>
     make("button", { type: "button", className: "small", title, onclick }, words);
   return [
-    button("Activate", "Let the controls act on this session", swap),
-    button("Close", `Close this view; ${sessionId} stays on the server`, close),
+    button(t("Activate"), t("Let the controls act on this session"), swap),
+    button(t("Close"), t("Close this view; {0} stays on the server", sessionId), close),
   ];
 }
 
@@ -77,8 +78,10 @@ export function domeLabel(frame: Frame | undefined): string {
   if (frame === undefined) return "";
   return domeHeights(frame)
     .map(({ name, height }) => {
-      const way = (1000 * Math.abs(height)).toFixed(1);
-      return `${name} ${way} mm${way === "0.0" ? "" : height > 0 ? " up" : " down"}`;
+      const way = fixed(1000 * Math.abs(height), 1);
+      const words =
+        Number((1000 * height).toFixed(1)) === 0 ? "{0} {1} mm" : height > 0 ? "{0} {1} mm up" : "{0} {1} mm down";
+      return t(words, t(name), way);
     })
     .join(", ");
 }

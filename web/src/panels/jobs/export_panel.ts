@@ -5,6 +5,7 @@ import type { Body } from "../../geometry/bodies";
 import type { Exports } from "../../session/exports";
 import type { Signal } from "../../state/signal";
 import { exportProgress } from "./export_progress";
+import { t } from "../../language/translate";
 
 const valueNames: [ExportValues, string][] = [
   [ExportValues.UNSPECIFIED, "default"],
@@ -14,25 +15,27 @@ const valueNames: [ExportValues, string][] = [
 
 /** Selects format, duration and bodies, and records the motion into a file. */
 export function exportPanel(exports: Exports, bodies: Signal<Body[]>): HTMLElement {
-  const start = make("button", { type: "button", id: "export", onclick: () => void exports.start() }, "Export…");
+  const start = make("button", { type: "button", id: "export", onclick: () => void exports.start() }, t("Export…"));
   const rows = [
     formatRow(exports),
     bodyRow(exports, bodies),
-    numberRow("export-seconds", "Duration [s]", "8", (value) => exports.choose({ seconds: value ?? 8 })),
-    numberRow("export-fps", "Frames per second", "default", (value) => exports.choose({ framesPerSecond: value })),
+    numberRow("export-seconds", t("Duration [s]"), "8", (value) => exports.choose({ seconds: value ?? 8 })),
+    numberRow("export-fps", t("Frames per second"), t("default"), (value) =>
+      exports.choose({ framesPerSecond: value }),
+    ),
     valuesRow(exports),
   ];
   const [, bodyChoice, length, rate, values] = rows as [HTMLElement, ...HTMLElement[]];
   const hint = make("p", { className: "faint" });
   exports.choices.subscribe(() => {
     const format = exports.format;
-    hint.textContent = format?.description ?? "";
+    hint.textContent = t(format?.description ?? "");
     rate!.hidden = format?.instant ?? false;
     length!.hidden = (format?.instant ?? false) || (format?.page ?? false);
     bodyChoice!.hidden = (format?.numbersOnly ?? false) || (format?.page ?? false);
     values!.hidden = (format?.values.length ?? 0) < 2;
   });
-  const panel = section("Export the motion", false, ...rows, hint, start, exportProgress(exports, start, "export"));
+  const panel = section(t("Export the motion"), false, ...rows, hint, start, exportProgress(exports, start, "export"));
   return loadOnOpen(panel, () => exports.loadFormats());
 }
 
@@ -42,13 +45,13 @@ function formatRow(exports: Exports): HTMLElement {
   exports.formats.subscribe((formats) => {
     list.replaceChildren(
       ...formats.map(({ name, instant }) =>
-        make("option", { value: name }, instant ? `.${name}, current state` : `.${name}`),
+        make("option", { value: name }, instant ? t(".{0}, current state", name) : `.${name}`),
       ),
     );
     list.value = exports.choices.value.format;
     exports.choose({});
   });
-  return labelledRow("export-format", "Format", list);
+  return labelledRow("export-format", t("Format"), list);
 }
 
 function bodyRow(exports: Exports, bodies: Signal<Body[]>): HTMLElement {
@@ -58,20 +61,20 @@ function bodyRow(exports: Exports, bodies: Signal<Body[]>): HTMLElement {
   bodies.subscribe((present) => {
     const names = present.map(({ name }) => make("option", { value: name }, name));
     list.replaceChildren(
-      make("option", { value: "" }, "deformable bodies"),
-      make("option", { value: "*" }, "all bodies"),
+      make("option", { value: "" }, t("deformable bodies")),
+      make("option", { value: "*" }, t("all bodies")),
       ...names,
     );
     exports.choose({ bodies: [] });
   });
-  return labelledRow("export-body", "Bodies", list);
+  return labelledRow("export-body", t("Bodies"), list);
 }
 
 function valuesRow(exports: Exports): HTMLElement {
   const list = make("select", { id: "export-values" });
-  list.append(...valueNames.map(([value, label]) => make("option", { value: String(value) }, label)));
+  list.append(...valueNames.map(([value, label]) => make("option", { value: String(value) }, t(label))));
   list.onchange = () => exports.choose({ values: Number(list.value) });
-  return labelledRow("export-values", "Values", list);
+  return labelledRow("export-values", t("Values"), list);
 }
 
 function numberRow(id: string, label: string, placeholder: string, choose: (value: number | undefined) => void) {

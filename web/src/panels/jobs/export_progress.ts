@@ -2,6 +2,7 @@ import { make } from "../../dom/elements";
 import { alertMessage } from "../../dom/rows";
 import type { ExportProgress } from "../../session/exports";
 import type { Signal } from "../../state/signal";
+import { fixed, t } from "../../language/translate";
 
 /** Something that makes a file, and can be stopped. */
 export interface FileMaking {
@@ -39,10 +40,10 @@ class RunningRow {
   readonly elements: HTMLElement[];
   private readonly verb = make("span");
   private readonly left = make("span");
-  private readonly bar = make("progress", { max: 1, ariaLabel: "Progress of the export" });
+  private readonly bar = make("progress", { max: 1, ariaLabel: t("Progress of the export") });
 
   constructor(stop: () => void) {
-    this.stop = make("button", { type: "button", onclick: stop }, "Stop");
+    this.stop = make("button", { type: "button", onclick: stop }, t("Stop"));
     this.verb.setAttribute("role", "status");
     const words = make("p", { className: "faint" }, this.verb, this.left);
     this.elements = [words, make("div", { className: "row" }, this.bar, this.stop)];
@@ -50,8 +51,9 @@ class RunningRow {
 
   show(work: Running): void {
     const seconds = work.kind === "recording" ? work.secondsLeft : undefined;
-    if (this.verb.textContent !== verbs[work.kind]) this.verb.textContent = verbs[work.kind];
-    this.left.textContent = seconds === undefined ? "…" : `, ${seconds.toFixed(0)} s left…`;
+    const verb = t(verbs[work.kind]);
+    if (this.verb.textContent !== verb) this.verb.textContent = verb;
+    this.left.textContent = seconds === undefined ? "…" : t(", {0} s left…", seconds.toFixed(0));
     this.bar.value = work.done;
   }
 }
@@ -59,6 +61,8 @@ class RunningRow {
 function finishedElements(work: ExportProgress, id: string): HTMLElement[] {
   if (work.kind === "failed") return [alertMessage(work.message)];
   if (work.kind !== "ready") return [];
-  const size = (work.size / 1e6).toFixed(1);
-  return [make("a", { href: work.url, download: work.file, id: `${id}-link` }, `Save ${work.file} (${size} MB)`)];
+  const size = fixed(work.size / 1e6, 1);
+  return [
+    make("a", { href: work.url, download: work.file, id: `${id}-link` }, t("Save {0} ({1} MB)", work.file, size)),
+  ];
 }

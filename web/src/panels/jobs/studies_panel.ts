@@ -4,6 +4,7 @@ import { section } from "../../dom/rows";
 import { type Study, StudyState } from "../../gen/phrenic/v1/study_pb";
 import type { SessionController } from "../../session/session_controller";
 import { isFinished, type Studies, type StudyKind } from "../../session/studies";
+import { t } from "../../language/translate";
 
 const kinds: [StudyKind, string, string][] = [
   [
@@ -19,8 +20,8 @@ const kinds: [StudyKind, string, string][] = [
 /** Starts, lists, cancels and shows studies of the session's scene with its current parameters. */
 export function studiesPanel(studies: Studies, controller: SessionController): HTMLElement {
   const kind = make("select", { id: "study-kind" });
-  kind.append(...kinds.map(([value, label, title]) => make("option", { value, title }, label)));
-  const start = make("button", { type: "button", id: "study-start" }, "Start");
+  kind.append(...kinds.map(([value, label, title]) => make("option", { value, title: t(title) }, t(label))));
+  const start = make("button", { type: "button", id: "study-start" }, t("Start"));
   start.onclick = () => {
     const session = controller.session.value;
     if (session !== undefined) void studies.start(kind.value as StudyKind, session.scene, session.parameters);
@@ -34,11 +35,11 @@ export function studiesPanel(studies: Studies, controller: SessionController): H
   const hint = make(
     "p",
     { className: "faint" },
-    "Studies of this scene with its current parameters. One study runs at a time.",
+    t("Studies of this scene with its current parameters. One study runs at a time."),
   );
   const row = make("div", { className: "study-start" }, kind, start);
-  kind.ariaLabel = "Study";
-  const panel = section("Studies", false, row, hint, fault, list, view.element);
+  kind.ariaLabel = t("Study");
+  const panel = section(t("Studies"), false, row, hint, fault, list, view.element);
   panel.ontoggle = () => {
     if (panel.open) void studies.load();
   };
@@ -53,37 +54,37 @@ function studyRow(study: Study, studies: Studies, view: StudyView): HTMLElement 
     state === StudyState.FAILED
       ? problem
       : state === StudyState.DONE
-        ? "done"
+        ? t("done")
         : state === StudyState.QUEUED
-          ? "waiting"
+          ? t("waiting")
           : doing;
   const buttons = make("div", { className: "row" });
   if (state === StudyState.DONE) buttons.append(...doneButtons(study, studies, view));
-  const remove = make("button", { type: "button", className: "small" }, isFinished(study) ? "Delete" : "Cancel");
+  const remove = make("button", { type: "button", className: "small" }, isFinished(study) ? t("Delete") : t("Cancel"));
   remove.ariaLabel = `${remove.textContent} ${id}`;
   remove.onclick = () => void studies.remove(id);
   buttons.append(remove);
-  const bar = make("progress", { max: 1, value: study.progress, ariaLabel: `Progress of ${id}` });
+  const bar = make("progress", { max: 1, value: study.progress, ariaLabel: t("Progress of {0}", id) });
   const row = make("div", { className: "study" }, words, buttons, ...(isFinished(study) ? [] : [bar]));
   row.dataset.study = id;
   return row;
 }
 
 function doneButtons({ id }: Study, studies: Studies, view: StudyView): HTMLElement[] {
-  const open = make("button", { type: "button", className: "small", ariaLabel: `Open ${id}` }, "Open");
+  const open = make("button", { type: "button", className: "small", ariaLabel: t("Open {0}", id) }, t("Open"));
   open.onclick = async () => view.show(await studies.result(id));
-  const save = make("button", { type: "button", className: "small", ariaLabel: `Save ${id}` }, "Save");
+  const save = make("button", { type: "button", className: "small", ariaLabel: t("Save {0}", id) }, t("Save"));
   save.onclick = async () => download(`${id}.html`, new Blob([await studies.page(id)], { type: "text/html" }));
   return [open, save];
 }
 
 /** A dialog that shows a study. */
 class StudyView {
-  readonly element = make("dialog", { className: "study-view", ariaLabel: "Study" });
+  readonly element = make("dialog", { className: "study-view", ariaLabel: t("Study") });
   private readonly paper = make("div");
 
   constructor() {
-    const close = make("button", { type: "button", onclick: () => this.element.close() }, "Close");
+    const close = make("button", { type: "button", onclick: () => this.element.close() }, t("Close"));
     this.element.append(make("header", {}, close), this.paper);
   }
 

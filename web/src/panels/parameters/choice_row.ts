@@ -2,6 +2,7 @@ import { make } from "../../dom/elements";
 import { resetButton } from "../../dom/rows";
 import type { ChoiceControl } from "../../parameters/controls";
 import type { RowEvents } from "./number_row";
+import { t } from "../../language/translate";
 
 /** A row to select one of several values: label, list, reset. */
 export class ChoiceRow {
@@ -10,12 +11,12 @@ export class ChoiceRow {
 
   constructor({ field, label, help, defaultValue, options }: ChoiceControl, events: RowEvents) {
     const id = `parameter-${field}`;
-    this.list = make("select", { id, title: help });
-    this.list.append(...options.map(({ value, label }) => make("option", { value: String(value) }, label)));
+    this.list = make("select", { id, title: t(help) });
+    this.list.append(...options.map(({ value, label }) => make("option", { value: String(value) }, t(label))));
     this.list.onchange = () => events.set(Number(this.list.value));
     this.show(defaultValue);
-    const name = make("label", { htmlFor: id, title: help }, label);
-    const reset = resetButton(label, () => events.reset());
+    const name = make("label", { htmlFor: id, title: t(help) }, t(label));
+    const reset = resetButton(t(label), () => events.reset());
     this.element = make("div", { className: "choice-row" }, name, this.list, reset);
   }
 

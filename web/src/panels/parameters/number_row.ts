@@ -2,6 +2,7 @@ import { make } from "../../dom/elements";
 import { resetButton } from "../../dom/rows";
 import type { NumberControl } from "../../parameters/controls";
 import { formatNumber, rangeError, sliderPosition, sliderValue } from "../../parameters/numbers";
+import { decimal, t } from "../../language/translate";
 
 /** Events of a row. */
 export interface RowEvents {
@@ -25,24 +26,24 @@ export class NumberRow {
     const id = `parameter-${control.field}`;
     this.slider = this.makeSlider(id);
     this.entry = make("input", { type: "number", step: "any", id: `${id}-entry` });
-    this.entry.ariaLabel = `${control.label}${control.unit ? ` in ${control.unit}` : ""}`;
+    this.entry.ariaLabel = control.unit ? t("{0} in {1}", t(control.label), control.unit) : t(control.label);
     this.entry.onchange = () => this.onEntry();
     this.fault = make("p", { className: "fault", id: `${id}-fault` });
     this.fault.setAttribute("role", "alert");
     this.element = make(
       "div",
       { className: "number-row" },
-      make("label", { htmlFor: id, title: control.help }, control.label),
+      make("label", { htmlFor: id, title: t(control.help) }, t(control.label)),
       make("span", { className: "entry" }, this.entry, make("span", { className: "unit" }, control.unit)),
       this.slider,
-      resetButton(control.label, () => events.reset()),
+      resetButton(t(control.label), () => events.reset()),
       this.fault,
     );
   }
 
   private makeSlider(id: string): HTMLInputElement {
     const { control } = this;
-    const slider = make("input", { type: "range", id, title: control.help });
+    const slider = make("input", { type: "range", id, title: t(control.help) });
     slider.min = String(sliderPosition(control, control.minimum));
     slider.max = String(sliderPosition(control, control.maximum));
     slider.step = String(control.step);
@@ -66,7 +67,7 @@ export class NumberRow {
   private write(value: number): void {
     this.entry.value = formatNumber(value);
     const unit = this.control.unit ? ` ${this.control.unit}` : "";
-    this.slider.setAttribute("aria-valuetext", formatNumber(value) + unit);
+    this.slider.setAttribute("aria-valuetext", decimal(formatNumber(value)) + unit);
     this.slider.style.setProperty("--filled", `${(100 * this.filled(value)).toFixed(1)}%`);
     this.showError(undefined);
   }

@@ -11,6 +11,7 @@ import { ChoiceRow } from "./choice_row";
 import { NumberRow } from "./number_row";
 import { PresetRow } from "./preset_row";
 import { pullRow } from "./pull_row";
+import { t } from "../../language/translate";
 
 /**
  * Sections with the live parameters, one per group and one row per field of the schema; the first has the presets too,
@@ -44,16 +45,16 @@ function groupSections(rows: Row[]): { element: HTMLElement; members: Row[] }[] 
   const groups = new Map<string, Row[]>();
   for (const row of rows) groups.set(row.group, [...(groups.get(row.group) ?? []), row]);
   return [...groups].map(([title, members]) => ({
-    element: section(title, true, ...members.map(({ element }) => element)),
+    element: section(t(title), true, ...members.map(({ element }) => element)),
     members,
   }));
 }
 
 /** Buttons to undo, redo and reset all parameters. */
 function changesRow(controller: SessionController): HTMLElement {
-  const undo = button("Undo", () => controller.undo(), icon("undo"), "Undo");
-  const redo = button("Redo", () => controller.redo(), icon("redo"), "Redo");
-  const all = button("Reset all parameters", () => void controller.resetAll(), "Reset all");
+  const undo = button(t("Undo"), () => controller.undo(), icon("undo"), t("Undo"));
+  const redo = button(t("Redo"), () => controller.redo(), icon("redo"), t("Redo"));
+  const all = button(t("Reset all parameters"), () => void controller.resetAll(), t("Reset all"));
   [undo.id, redo.id, all.id] = ["undo", "redo", "reset-all"];
   controller.changes.state.subscribe((state) => {
     undo.disabled = !state.undo;
@@ -86,7 +87,7 @@ function parameterRow(control: Control, controller: SessionController): Row {
 }
 
 function parameterSwitch(control: SwitchControl, name: ParameterName, controller: SessionController): Row {
-  const { row, input } = switchRow(control.label, control.help, (on) => controller.set(name, on));
+  const { row, input } = switchRow(t(control.label), t(control.help), (on) => controller.set(name, on));
   input.id = `parameter-${name}`;
   return {
     name,

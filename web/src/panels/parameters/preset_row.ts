@@ -4,6 +4,7 @@ import type { Preset } from "../../gen/phrenic/v1/scene_pb";
 import { activePreset, isActive, presetGroups, presetLabel } from "../../parameters/presets";
 import type { SessionController } from "../../session/session_controller";
 import { Signal } from "../../state/signal";
+import { t } from "../../language/translate";
 
 /**
  * A button for each preset of the scene; hidden if there are none. Named groups can be folded; the one with the active
@@ -20,7 +21,7 @@ export class PresetRow {
     private readonly controller: SessionController,
     private readonly presets = new Signal<Preset[]>([]),
   ) {
-    this.element.ariaLabel = "Presets";
+    this.element.ariaLabel = t("Presets");
     this.description.setAttribute("aria-live", "polite");
     controller.session.subscribe((session) => {
       if (session === undefined) return;
@@ -49,13 +50,13 @@ export class PresetRow {
     const buttons = this.buttons.filter(({ preset }) => members.includes(preset)).map(({ element }) => element);
     const list = make("div", { className: "preset-list" }, ...buttons);
     if (name === "") return list;
-    return make("details", { className: "preset-group", open }, make("summary", {}, name), list);
+    return make("details", { className: "preset-group", open }, make("summary", {}, t(name)), list);
   }
 
   private button(preset: Preset): HTMLButtonElement {
     const onclick = () => void this.controller.usePreset(preset.name);
     const words = presetLabel(preset);
-    return make("button", { type: "button", title: preset.description || words, onclick }, words);
+    return make("button", { type: "button", title: t(preset.description) || words, onclick }, words);
   }
 
   private press(parameters: Parameters | undefined): void {
@@ -72,7 +73,7 @@ export class PresetRow {
   }
 
   private describe(active: Preset | undefined): void {
-    const words = active === undefined ? "The parameters are those of no preset." : active.description;
+    const words = active === undefined ? t("The parameters are those of no preset.") : t(active.description);
     if (this.description.textContent !== words) this.description.textContent = words;
   }
 }

@@ -6,6 +6,7 @@ import { toCsv, toSvg } from "../../graphs/files";
 import { Plot, type PlotEvents } from "../../graphs/plot";
 import { graphData, type GraphData, type TimeSpan } from "../../graphs/window";
 import type { TimeSeries } from "../../state/time_series";
+import { decimal, t } from "../../language/translate";
 
 /** One graph with its title, legend, current values, and buttons to save it. */
 export class GraphTile {
@@ -30,9 +31,9 @@ export class GraphTile {
     const save = ["SVG", "CSV"].map((kind) => this.saveButton(kind as "SVG" | "CSV"));
     // A single curve needs no legend.
     const alone = keys.length === 1;
-    const title = make("h3", { title: spec.help ?? "" }, this.title(), ...(alone ? this.readings : []));
+    const title = make("h3", { title: t(spec.help ?? "") }, this.title(), ...(alone ? this.readings : []));
     const head = make("header", {}, title, make("div", { className: "save" }, ...save));
-    this.element = make("section", { className: "tile", ariaLabel: spec.title }, head, this.plot.element);
+    this.element = make("section", { className: "tile", ariaLabel: t(spec.title) }, head, this.plot.element);
     if (!alone) this.element.append(make("div", { className: "keys" }, ...keys));
     this.element.dataset.graph = spec.id;
   }
@@ -62,13 +63,14 @@ export class GraphTile {
   }
 
   private title(): string {
-    const { title, unit, abscissa } = this.spec;
+    const { unit, abscissa } = this.spec;
+    const title = t(this.spec.title);
     if (abscissa !== undefined) return `${title} [${unit}, ${abscissa.unit}]`;
     return unit === "" ? title : `${title} [${unit}]`;
   }
 
   private key({ name }: Curve, place: number): HTMLElement {
-    return make("span", { className: "key" }, this.swatches[place], make("span", {}, name), this.readings[place]);
+    return make("span", { className: "key" }, this.swatches[place], make("span", {}, t(name)), this.readings[place]);
   }
 
   private saveButton(kind: "SVG" | "CSV"): HTMLElement {
@@ -78,7 +80,7 @@ export class GraphTile {
       const file = `${this.fileName()}-${this.spec.id.replaceAll(/[^a-z0-9]+/g, "-")}.${kind.toLowerCase()}`;
       download(file, new Blob([content], { type }));
     };
-    const title = `Save ${this.spec.title} as ${kind}`;
+    const title = t("Save {0} as {1}", t(this.spec.title), kind);
     return make("button", { type: "button", className: "small", title, ariaLabel: title, onclick: save }, kind);
   }
 }
@@ -87,5 +89,5 @@ export class GraphTile {
 function formatReading(value: number): string {
   const size = Math.abs(value);
   const text = value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3);
-  return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
+  return decimal(Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−"));
 }

@@ -6,6 +6,7 @@ import type { TimeSpan } from "../../graphs/window";
 import { TimeSeries } from "../../state/time_series";
 import { GraphTile } from "./graph_tile";
 import { MModePictures } from "./m_mode_pictures";
+import { fixed, t } from "../../language/translate";
 
 /** Duration that is kept, and the durations that can be shown [simulated s]. */
 const kept = 120;
@@ -26,7 +27,7 @@ export class GraphsPanel {
   private readonly list = make("div", { className: "tiles" });
   private readonly pause: HTMLButtonElement;
   private readonly words = make("span", { className: "faint", id: "graphs-span" });
-  private readonly length = make("select", { id: "graphs-length", ariaLabel: "Time shown", title: "Time shown" });
+  private readonly length = make("select", { id: "graphs-length", ariaLabel: t("Time shown"), title: t("Time shown") });
   private tiles: GraphTile[] = [];
   private specsKey = "";
   private held: TimeSpan | undefined;
@@ -39,10 +40,14 @@ export class GraphsPanel {
     this.length.append(...lengths.map((each) => make("option", { value: String(each) }, `${each} s`)));
     this.length.value = "12";
     this.length.onchange = () => this.resume();
-    this.pause = button("Hold the graphs", () => (this.held ? this.resume() : this.hold(this.newest())), icon("pause"));
+    this.pause = button(
+      t("Hold the graphs"),
+      () => (this.held ? this.resume() : this.hold(this.newest())),
+      icon("pause"),
+    );
     this.pause.id = "graphs-pause";
     this.pause.className = "quiet";
-    const title = make("h2", {}, "Graphs");
+    const title = make("h2", {}, t("Graphs"));
     this.element.append(make("header", { className: "bar" }, title, this.words, this.length, this.pause), this.list);
   }
 
@@ -90,8 +95,8 @@ export class GraphsPanel {
 
   private hold(span: TimeSpan): void {
     this.held = span;
-    this.words.textContent = `held, ${span.start.toFixed(1)} to ${span.end.toFixed(1)} s`;
-    this.label("Resume the graphs", "play");
+    this.words.textContent = t("held, {0} to {1} s", fixed(span.start, 1), fixed(span.end, 1));
+    this.label(t("Resume the graphs"), "play");
     this.show(span);
   }
 
@@ -99,7 +104,7 @@ export class GraphsPanel {
     this.held = undefined;
     this.drawn = -1;
     this.words.textContent = "";
-    this.label("Hold the graphs", "pause");
+    this.label(t("Hold the graphs"), "pause");
     this.draw();
   }
 

@@ -4,14 +4,14 @@ import { type Body, type FrameArrays, positionsOf } from "../../geometry/bodies"
 import { crossings, summitOf } from "../../geometry/column";
 import { ColumnRecord, paint, pictureDepth, restDepth } from "../../graphs/m_mode";
 import type { TimeSpan } from "../../graphs/window";
+import { decimal, t } from "../../language/translate";
 
 /** Pixels of a picture. */
 const [width, height] = [560, 140];
 /** Distance of the marks of depth [m]. */
 const markEvery = 0.05;
 const help =
-  "As an ultrasound probe below the ribs sees the dome: its surfaces are bright lines, which rise when it descends. " +
-  "The grain of the tissue is drawn, not simulated.";
+  "As an ultrasound probe below the ribs sees the dome: its surfaces are bright lines, which rise when it descends. The grain of the tissue is drawn, not simulated.";
 
 /** One column of the body and its picture. */
 interface Column {
@@ -33,7 +33,7 @@ export class MModePictures {
 
   /** Keeps `kept` seconds of simulated time. */
   constructor(private readonly kept: number) {
-    const { row, input } = switchRow("Picture", help, (on) => (this.list.hidden = !on));
+    const { row, input } = switchRow(t("Picture"), t(help), (on) => (this.list.hidden = !on));
     input.id = "m-mode-picture";
     this.input = input;
     this.element.append(row, this.list);
@@ -64,8 +64,8 @@ export class MModePictures {
       const image = pen.createImageData(width, height);
       paint(image.data, width, record, span);
       pen.putImageData(image, 0, 0);
-      const depth = record.newest === undefined ? "" : ` The dome is at ${centimetres(record.newest)} now.`;
-      canvas.ariaLabel = `M-mode picture of the ${name}: depth over time, ${help}${depth}`;
+      const depth = record.newest === undefined ? "" : t(" The dome is at {0} now.", centimetres(record.newest));
+      canvas.ariaLabel = t("M-mode picture: {0}. Depth over time. {1}{2}", t(name), t(help), depth);
     }
   }
 }
@@ -79,7 +79,7 @@ function columnsOf(rest: Float32Array, kept: number): Column[] {
     const summit = summitOf(rest, side);
     if (summit < 0) return [];
     const [x, y, z] = rest.subarray(3 * summit, 3 * summit + 3);
-    const canvas = make("canvas", { width, height, role: "img", ariaLabel: `M-mode picture of the ${name}` });
+    const canvas = make("canvas", { width, height, role: "img", ariaLabel: t("M-mode picture: {0}", t(name)) });
     return [{ name, x, y, record: new ColumnRecord(z, kept), canvas }];
   });
 }
@@ -92,8 +92,8 @@ function picture({ name, canvas }: Column): HTMLElement {
     mark.style.top = `${(100 * depth) / pictureDepth}%`;
     scale.append(mark);
   }
-  const title = `Depth from a probe ${centimetres(restDepth)} below the dome at rest`;
-  return make("figure", { title }, make("figcaption", {}, name), scale, canvas);
+  const title = t("Depth from a probe {0} below the dome at rest", centimetres(restDepth));
+  return make("figure", { title }, make("figcaption", {}, t(name)), scale, canvas);
 }
 
-const centimetres = (metres: number) => `${(100 * metres).toFixed(1).replace(/\.0$/, "")} cm`;
+const centimetres = (metres: number) => `${decimal((100 * metres).toFixed(1).replace(/\.0$/, ""))} cm`;

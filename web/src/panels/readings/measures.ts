@@ -2,11 +2,12 @@ import { make } from "../../dom/elements";
 import { section } from "../../dom/rows";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
 import { displayUnit } from "../../graphs/units";
+import { decimal, t } from "../../language/translate";
 
 /** Formats four significant digits in the unit of the user interface: "2.513 l". */
 export function readingText(value: number, unit: string): string {
   const [name, factor] = displayUnit(unit);
-  return `${Number((factor * value).toPrecision(4))} ${name}`;
+  return `${decimal(String(Number((factor * value).toPrecision(4))))} ${name}`;
 }
 
 /** The scene's measures, one row each. */
@@ -15,7 +16,7 @@ export class Measures {
   private readonly rows = make("tbody");
 
   constructor() {
-    this.element = section("Measures", true, make("table", { className: "probes" }, this.rows));
+    this.element = section(t("Measures"), true, make("table", { className: "probes" }, this.rows));
     this.element.hidden = true;
   }
 
@@ -26,7 +27,7 @@ export class Measures {
     while (this.rows.children.length > measures.length) this.rows.lastElementChild?.remove();
     measures.forEach(({ name, value, unit }, i) => {
       const row = this.rows.children[i] ?? this.addRow();
-      [name, readingText(value, unit)].forEach((text, k) => {
+      [t(name), readingText(value, unit)].forEach((text, k) => {
         if (row.children[k].textContent !== text) row.children[k].textContent = text;
       });
     });

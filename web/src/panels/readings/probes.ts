@@ -1,6 +1,7 @@
 import { make } from "../../dom/elements";
 import { section } from "../../dom/rows";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
+import { fixed, t } from "../../language/translate";
 
 /** The probes' displacements from rest in anatomical directions [mm]. */
 export class Probes {
@@ -8,10 +9,10 @@ export class Probes {
   private readonly rows = make("tbody");
 
   constructor() {
-    const heads = ["Probe", "Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, text));
+    const heads = ["Probe", "Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, t(text)));
     const table = make("table", { className: "probes" }, make("thead", {}, make("tr", {}, ...heads)), this.rows);
-    const unit = make("p", { className: "faint" }, "Displacement of one vertex each from rest, in mm");
-    this.element = section("Probes", true, table, unit);
+    const unit = make("p", { className: "faint" }, t("Displacement of one vertex each from rest, in mm"));
+    this.element = section(t("Probes"), true, table, unit);
     this.element.hidden = true;
   }
 
@@ -22,7 +23,7 @@ export class Probes {
     while (this.rows.rows.length > probes.length) this.rows.deleteRow(-1);
     probes.forEach(({ name, dx, dy, dz }, i) => {
       const row = this.rows.rows[i] ?? this.addRow();
-      [name, ...[dx, dy, dz].map((metres) => (1000 * metres).toFixed(1))].forEach((text, k) => {
+      [t(name), ...[dx, dy, dz].map((metres) => fixed(1000 * metres, 1))].forEach((text, k) => {
         const cell = row.cells[k];
         if (cell.textContent !== text) cell.textContent = text;
       });

@@ -4,6 +4,7 @@ import type { Session } from "../../gen/phrenic/v1/session_pb";
 import { formatNumber } from "../../parameters/numbers";
 import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
+import { decimal, t } from "../../language/translate";
 
 /** Banners for a diverged session, a lost connection, a failed save and a refused call, with their remedies. */
 export function banners(
@@ -43,7 +44,7 @@ export function banners(
   const notice = banner("status", "notice");
   controller.notice.subscribe((text) => {
     notice.hidden = text === "";
-    const dismiss = make("button", { type: "button", onclick: () => controller.notice.set("") }, "Dismiss");
+    const dismiss = make("button", { type: "button", onclick: () => controller.notice.set("") }, t("Dismiss"));
     notice.replaceChildren(make("p", {}, sentence(text)), dismiss);
   });
   return [diverged, lost, unsaved, warned, notice];
@@ -52,7 +53,7 @@ export function banners(
 function unsavedText(why: string): string {
   return why === ""
     ? ""
-    : `The last changes are not saved: ${why}. The session continues and is saved when the problem is solved.`;
+    : t("The last changes are not saved: {0}. The session continues and is saved when the problem is solved.", why);
 }
 
 function banner(role: string, name: string): HTMLElement {
@@ -64,10 +65,11 @@ function banner(role: string, name: string): HTMLElement {
 function divergenceMessage({ divergence, largestStableStep }: Session, controller: SessionController): HTMLElement[] {
   if (divergence === undefined) return [];
   const { time, body, vertex, force, remedy } = divergence;
-  const where = `The simulation diverged at ${formatNumber(time)} s, at vertex ${vertex} of ${body} (${force}).`;
-  const restart = make("button", { type: "button", className: "primary" }, "Restart with a stable time step");
+  const when = decimal(formatNumber(time));
+  const where = t("The simulation diverged at {0} s, at vertex {1} of {2} ({3}).", when, String(vertex), body, force);
+  const restart = make("button", { type: "button", className: "primary" }, t("Restart with a stable time step"));
   restart.onclick = () => void restartStable(controller, largestStableStep);
-  const halve = make("button", { type: "button", title: halvingHelp }, "Restart with adaptive steps");
+  const halve = make("button", { type: "button", title: t(halvingHelp) }, t("Restart with adaptive steps"));
   halve.onclick = () => void restartHalving(controller);
   return [make("p", {}, make("b", {}, where), " ", sentence(remedy)), restart, halve];
 }
@@ -99,7 +101,9 @@ async function restartStable(controller: SessionController, largest: number): Pr
 }
 
 function lossMessage(reason: string, missing: boolean, chooseSession: () => void): HTMLElement[] {
-  const words = missing ? sentence(reason) : `The connection is lost: ${sentence(reason)} Reconnecting automatically.`;
-  const choose = make("button", { type: "button", onclick: chooseSession }, "Choose a session");
+  const words = missing
+    ? sentence(reason)
+    : t("The connection is lost: {0} Reconnecting automatically.", sentence(reason));
+  const choose = make("button", { type: "button", onclick: chooseSession }, t("Choose a session"));
   return [make("p", {}, words), ...(missing ? [choose] : [])];
 }

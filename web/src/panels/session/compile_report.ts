@@ -3,6 +3,7 @@ import { section } from "../../dom/rows";
 import type { CompileReport } from "../../gen/phrenic/v1/report_pb";
 import { formatNumber } from "../../parameters/numbers";
 import type { Signal } from "../../state/signal";
+import { decimal, t } from "../../language/translate";
 
 const count = new Intl.NumberFormat("en");
 
@@ -10,7 +11,7 @@ const count = new Intl.NumberFormat("en");
 export function compileReportPanel(report: Signal<CompileReport | undefined>): HTMLElement {
   const body = make("div", { className: "report" });
   report.subscribe((value) => body.replaceChildren(...(value === undefined ? [] : contents(value))));
-  return section("Scene report", false, body);
+  return section(t("Scene report"), false, body);
 }
 
 function contents(report: CompileReport): HTMLElement[] {
@@ -25,7 +26,7 @@ function totals(report: CompileReport): HTMLElement {
     ["attachments", report.attachments],
   ];
   const cells = numbers.map(([name, value]) =>
-    make("div", {}, make("b", {}, count.format(value)), make("span", {}, name)),
+    make("div", {}, make("b", {}, count.format(value)), make("span", {}, t(name))),
   );
   return make("div", { className: "totals" }, ...cells);
 }
@@ -33,8 +34,15 @@ function totals(report: CompileReport): HTMLElement {
 function step({ stableStep }: CompileReport): HTMLElement {
   if (stableStep === undefined) return make("p");
   const { seconds, chosenSeconds, reason } = stableStep;
-  const largest = make("b", {}, `${formatNumber(1000 * seconds)} ms`);
-  return make("p", {}, "Largest stable step ", largest, `, chosen ${formatNumber(1000 * chosenSeconds)} ms. `, reason);
+  const largest = make("b", {}, `${decimal(formatNumber(1000 * seconds))} ms`);
+  return make(
+    "p",
+    {},
+    t("Largest stable step "),
+    largest,
+    t(", chosen {0} ms. ", decimal(formatNumber(1000 * chosenSeconds))),
+    reason,
+  );
 }
 
 function list(title: string, items: [string, string][]): HTMLElement {
@@ -48,12 +56,12 @@ function runs({ elements }: CompileReport): HTMLElement {
     element.name || element.family,
     [`${count.format(element.count)} ${element.counted}`, element.detail].filter(Boolean).join("; "),
   ]);
-  return list("Computed in every step", items);
+  return list(t("Computed in every step"), items);
 }
 
 function leftOut(report: CompileReport): HTMLElement {
   return list(
-    "Left out",
+    t("Left out"),
     report.leftOut.map(({ what, why }): [string, string] => [what, why]),
   );
 }
@@ -63,9 +71,9 @@ function times({ stages, compileSeconds }: CompileReport): HTMLElement {
   const part = (seconds: number) => Math.round((100 * seconds) / (compileSeconds || 1));
   const items = stages.map(({ name, seconds }): [string, string] => [
     name,
-    `${formatNumber(1000 * seconds)} ms, ${part(seconds)} %`,
+    `${decimal(formatNumber(1000 * seconds))} ms, ${part(seconds)} %`,
   ]);
-  return list("Compile time by stage", items);
+  return list(t("Compile time by stage"), items);
 }
 
 function bodies(report: CompileReport): HTMLElement {
@@ -73,12 +81,17 @@ function bodies(report: CompileReport): HTMLElement {
     body.name,
     `${body.role}, ${count.format(body.vertices)} vertices, ${count.format(body.triangles)} triangles`,
   ]);
-  const details = make("details", {}, make("summary", {}, `${items.length} bodies`));
+  const details = make("details", {}, make("summary", {}, t("{0} bodies", items.length)));
   details.append(list("", items));
   return details;
 }
 
 function hash({ sceneHash, compileSeconds }: CompileReport): HTMLElement {
   const short = make("code", { title: sceneHash }, sceneHash.slice(0, 12));
-  return make("p", { className: "faint" }, `Compiled in ${formatNumber(compileSeconds)} s. Scene `, short);
+  return make(
+    "p",
+    { className: "faint" },
+    t("Compiled in {0} s. Scene ", decimal(formatNumber(compileSeconds))),
+    short,
+  );
 }

@@ -3,6 +3,7 @@ import { make } from "../../dom/elements";
 import type { FrameRate } from "../../frames/frame_buffer";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
 import { type Session, SessionState } from "../../gen/phrenic/v1/session_pb";
+import { decimal, t } from "../../language/translate";
 
 /** The values that the status displays show, collected a few times per second. */
 export interface Status {
@@ -40,29 +41,28 @@ export function connectionLabels({ connection, session, rate, now }: Status): {
   detail: string;
   title: string;
 } {
-  if (connection.kind === "connecting") return { text: "Connecting", detail: "", title: "Waiting for the server." };
+  if (connection.kind === "connecting")
+    return { text: t("Connecting"), detail: "", title: t("Waiting for the server.") };
   if (connection.kind === "lost") {
     const seconds = Math.max(0, Math.ceil((connection.retryAt - now) / 1000));
-    const detail = seconds > 0 ? `retrying in ${seconds} s` : "retrying";
-    return { text: "Lost", detail, title: `${connection.reason} Click to retry now.` };
+    const detail = seconds > 0 ? t("retrying in {0} s", seconds) : t("retrying");
+    return { text: t("Lost"), detail, title: `${connection.reason} ${t("Click to retry now.")}` };
   }
   const fast = rateLabel(rate);
-  const stopped = session?.state === SessionState.DIVERGED ? "diverged" : "paused";
+  const stopped = session?.state === SessionState.DIVERGED ? t("diverged") : t("paused");
   const detail = session?.state === SessionState.PLAYING ? fast : stopped;
-  return { text: "Live", detail, title: rateTitle };
+  return { text: t("Live"), detail, title: t(rateTitle) };
 }
 
 const rateTitle =
-  "Frames per second, their age at arrival plus the display delay that smooths the motion, and the largest position " +
-  "error. " +
-  "On a slow connection there are fewer frames, then less accurate ones.";
+  "Frames per second, their age at arrival plus the display delay that smooths the motion, and the largest position error. On a slow connection there are fewer frames, then less accurate ones.";
 
 /** Returns "30 fps, 12+35 ms, ±0.1 mm": rate, age plus display delay, error bound. */
 export function rateLabel({ framesPerSecond, age, delay, errorBound }: FrameRate): string {
   const words = [`${framesPerSecond} fps`];
   const held = Math.round(delay);
   if (age !== undefined) words.push(`${Math.max(0, Math.round(age))}${held > 0 ? `+${held}` : ""} ms`);
-  if (errorBound > 0) words.push(`±${errorBound} mm`);
+  if (errorBound > 0) words.push(`±${decimal(String(errorBound))} mm`);
   return words.join(", ");
 }
 
@@ -72,7 +72,7 @@ export class ViewerCount {
   private readonly noun = make("span");
   readonly element = make(
     "span",
-    { className: "viewer-count", title: "Number of viewers of this session" },
+    { className: "viewer-count", title: t("Number of viewers of this session") },
     this.count,
     this.noun,
   );
@@ -82,6 +82,6 @@ export class ViewerCount {
     const viewers = String(session?.viewers ?? 0);
     if (this.count.textContent === viewers) return;
     this.count.textContent = viewers;
-    this.noun.textContent = viewers === "1" ? " viewer" : " viewers";
+    this.noun.textContent = viewers === "1" ? t(" viewer") : t(" viewers");
   }
 }

@@ -8,6 +8,7 @@ import {
   refusalReason,
   type Roles,
 } from "../../session/participation";
+import { t } from "../../language/translate";
 
 /** A button in the header that shows who controls the session and opens the dialog. */
 export function controlBadge(participation: Participation, open: () => void): HTMLButtonElement {
@@ -15,9 +16,10 @@ export function controlBadge(participation: Participation, open: () => void): HT
   const badge = make("button", { type: "button", id: "control-badge", className: "pill", onclick: open }, words);
   participation.roles.subscribe((roles) => {
     const asking = roles.mayHandOver ? (roles.control?.participants ?? []).filter(({ asks }) => asks) : [];
-    words.textContent = asking.length > 0 ? `${controlLabel(roles)} · ${asking[0].name} asks` : controlLabel(roles);
+    words.textContent =
+      asking.length > 0 ? t("{0} · {1} asks", controlLabel(roles), asking[0].name) : controlLabel(roles);
     badge.dataset.asked = String(asking.length > 0);
-    badge.title = "Who may change this session: ask for control, hand it over, follow the camera";
+    badge.title = t("Who may change this session: ask for control, hand it over, follow the camera");
   });
   return badge;
 }
@@ -34,9 +36,14 @@ export function controlledGroup(participation: Participation, ...children: (Node
 
 /** A dialog with the user's name, the participants, and the actions that the user's role allows. */
 export class ControlDialog {
-  readonly element = make("dialog", { className: "chooser", id: "control", ariaLabel: "Who controls" });
+  readonly element = make("dialog", { className: "chooser", id: "control", ariaLabel: t("Who controls") });
   private readonly state = make("p", { id: "control-state" });
-  private readonly name = make("input", { type: "text", id: "control-name", maxLength: 40, placeholder: "Your name" });
+  private readonly name = make("input", {
+    type: "text",
+    id: "control-name",
+    maxLength: 40,
+    placeholder: t("Your name"),
+  });
   private readonly actions = make("div", { className: "acts" });
   private readonly people = make("ul", { id: "control-people" });
   private readonly errorMessage = make("p", { className: "fault", id: "control-fault" });
@@ -45,10 +52,10 @@ export class ControlDialog {
     private readonly participation: Participation,
     followed: () => void,
   ) {
-    const close = make("button", { type: "button", onclick: () => this.element.close() }, "Close");
+    const close = make("button", { type: "button", onclick: () => this.element.close() }, t("Close"));
     const { row: follow, input } = switchRow(
-      "Follow the camera of the participant in control",
-      "Your view moves with theirs",
+      t("Follow the camera of the participant in control"),
+      t("Your view moves with theirs"),
       (on) => {
         participation.identity.followsCamera = on;
         followed();
@@ -59,7 +66,7 @@ export class ControlDialog {
     this.name.value = participation.identity.name;
     this.errorMessage.setAttribute("role", "alert");
     this.element.append(
-      make("header", {}, make("h2", {}, "Who controls"), close),
+      make("header", {}, make("h2", {}, t("Who controls")), close),
       this.state,
       this.nameRow(),
       this.actions,
@@ -77,8 +84,8 @@ export class ControlDialog {
   }
 
   private nameRow(): HTMLElement {
-    const enter = make("button", { type: "submit", id: "control-enter" }, "Join");
-    const form = make("form", { className: "link-row" }, make("label", { htmlFor: this.name.id }, "Your name"));
+    const enter = make("button", { type: "submit", id: "control-enter" }, t("Join"));
+    const form = make("form", { className: "link-row" }, make("label", { htmlFor: this.name.id }, t("Your name")));
     form.append(this.name, enter);
     form.onsubmit = (event) => {
       event.preventDefault();
@@ -88,7 +95,7 @@ export class ControlDialog {
   }
 
   private update(roles: Roles): void {
-    this.state.textContent = `${controlLabel(roles)}.${roles.name === "" ? " Join with your name to take part." : ""}`;
+    this.state.textContent = `${controlLabel(roles)}.${roles.name === "" ? ` ${t("Join with your name to take part.")}` : ""}`;
     this.actions.replaceChildren(...this.actionsFor(roles));
     this.people.replaceChildren(...(roles.control?.participants ?? []).map((person) => this.personRow(person, roles)));
   }
@@ -101,21 +108,21 @@ export class ControlDialog {
     if (roles.name === "") return acts;
     if (!roles.hasControl && !roles.hasRequested)
       acts.push(button("take", takeLabel(roles), () => participation.requestControl()));
-    if (roles.hasRequested) acts.push(button("withdraw", "Withdraw the request", () => participation.release()));
+    if (roles.hasRequested) acts.push(button("withdraw", t("Withdraw the request"), () => participation.release()));
     if (roles.hasControl && !roles.isOwner)
-      acts.push(button("release", "Give control back", () => participation.release()));
+      acts.push(button("release", t("Give control back"), () => participation.release()));
     if (roles.isOwner && (roles.control?.controller !== "" || !isOpenToEveryone(roles)))
-      acts.push(button("open", "Let everyone control", () => participation.openToEveryone()));
+      acts.push(button("open", t("Let everyone control"), () => participation.openToEveryone()));
     return acts;
   }
 
   private personRow({ name, owner, asks }: Participant, roles: Roles): HTMLElement {
-    const parts = [name === roles.name && "you", owner && "owner", asks && "asks for control"].filter(Boolean);
-    if (name === roles.control?.controller) parts.push("controls");
+    const parts = [name === roles.name && t("you"), owner && t("owner"), asks && t("asks for control")].filter(Boolean);
+    if (name === roles.control?.controller) parts.push(t("controls"));
     const row = make("li", {}, make("div", {}, make("b", {}, name), make("span", {}, parts.join(", "))));
     row.dataset.person = name;
     if (roles.mayHandOver && name !== roles.control?.controller && !(owner && name === roles.name)) {
-      const hand = make("button", { type: "button", ariaLabel: `Hand control to ${name}` }, "Hand over");
+      const hand = make("button", { type: "button", ariaLabel: t("Hand control to {0}", name) }, t("Hand over"));
       hand.onclick = () => void this.participation.handOver(name);
       row.append(hand);
     }
@@ -124,6 +131,6 @@ export class ControlDialog {
 }
 
 function takeLabel(roles: Roles): string {
-  if (roles.isOwner) return roles.control?.controller ? "Take control back" : "Take exclusive control";
-  return roles.control?.controller ? "Ask for control" : "Take control";
+  if (roles.isOwner) return roles.control?.controller ? t("Take control back") : t("Take exclusive control");
+  return roles.control?.controller ? t("Ask for control") : t("Take control");
 }

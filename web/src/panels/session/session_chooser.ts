@@ -1,10 +1,11 @@
 import { type Api, errorText } from "../../connection/api";
 import { make } from "../../dom/elements";
 import { type SceneSummary, type Session, SessionState } from "../../gen/phrenic/v1/session_pb";
+import { t } from "../../language/translate";
 
 /** A dialog that opens a running session or starts a session of any scene in the server's catalogue. */
 export class SessionChooser {
-  readonly element = make("dialog", { className: "chooser", ariaLabel: "Sessions and scenes" });
+  readonly element = make("dialog", { className: "chooser", ariaLabel: t("Sessions and scenes") });
   private readonly sessions = make("ul");
   private readonly scenes = make("ul");
   private readonly words = make("p", { className: "fault" });
@@ -13,12 +14,12 @@ export class SessionChooser {
     private readonly api: Api,
     private readonly open: (sessionId: string) => void,
   ) {
-    const close = make("button", { type: "button", onclick: () => this.element.close() }, "Close");
+    const close = make("button", { type: "button", onclick: () => this.element.close() }, t("Close"));
     this.words.setAttribute("role", "alert");
     this.element.append(
-      make("header", {}, make("h2", {}, "Sessions"), close),
+      make("header", {}, make("h2", {}, t("Sessions")), close),
       this.sessions,
-      make("h2", {}, "Start a session of"),
+      make("h2", {}, t("Start a session of")),
       this.scenes,
       this.words,
     );
@@ -43,20 +44,21 @@ export class SessionChooser {
   }
 
   private sessionRow({ id, scene, sceneTitle, state, viewers }: Session): HTMLElement {
-    const words = state === SessionState.PLAYING ? "playing" : state === SessionState.DIVERGED ? "diverged" : "paused";
-    const detail = `${id}, ${words}, ${viewers === 1 ? "1 viewer" : `${viewers} viewers`}`;
-    return this.row(sceneTitle || scene, detail, "Open", async () => this.open(id));
+    const words =
+      state === SessionState.PLAYING ? t("playing") : state === SessionState.DIVERGED ? t("diverged") : t("paused");
+    const detail = `${id}, ${words}, ${viewers === 1 ? t("1 viewer") : t("{0} viewers", viewers)}`;
+    return this.row(t(sceneTitle) || scene, detail, t("Open"), async () => this.open(id));
   }
 
   private sceneRow({ name, title, description }: SceneSummary): HTMLElement {
-    const row = this.row(title || name, description, "Start", () => this.start(name));
+    const row = this.row(t(title) || name, t(description), t("Start"), () => this.start(name));
     row.dataset.scene = name;
     return row;
   }
 
   private row(title: string, detail: string, verb: string, act: () => Promise<void>): HTMLElement {
     const words = make("div", {}, make("b", {}, title), make("span", {}, detail));
-    const go = make("button", { type: "button", ariaLabel: `${verb} ${title}` }, verb);
+    const go = make("button", { type: "button", ariaLabel: `${verb}: ${title}` }, verb);
     go.onclick = async () => {
       go.disabled = true;
       await act();
@@ -66,7 +68,7 @@ export class SessionChooser {
   }
 
   private async start(name: string): Promise<void> {
-    this.words.textContent = "Compiling the scene…";
+    this.words.textContent = t("Compiling the scene…");
     try {
       const { session } = await this.api.sessions.createSession({ source: { source: { case: "name", value: name } } });
       const sessionId = session?.id ?? "";

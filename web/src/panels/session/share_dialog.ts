@@ -4,6 +4,7 @@ import { withPageView } from "../../session/page_view";
 import { permalinkOf } from "../../session/permalink";
 import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
+import { t } from "../../language/translate";
 
 /** What the dialog acts on. */
 export interface Sharing {
@@ -18,25 +19,26 @@ export interface Sharing {
 
 /** A dialog with links to this session, copies of it, and a screenshot. */
 export class ShareDialog {
-  readonly element = make("dialog", { className: "chooser", id: "share", ariaLabel: "Share and copy" });
-  private readonly session = linkRow("share-session", "This session, for others to join");
-  private readonly forClass = linkRow("share-class", "For a class: plain words and few controls");
-  private readonly frame = linkRow("share-embed", "HTML to embed the view in another page");
-  private readonly permalink = linkRow("share-permalink", "This state, simulated again when the link is opened");
+  readonly element = make("dialog", { className: "chooser", id: "share", ariaLabel: t("Share and copy") });
+  private readonly session = linkRow("share-session", t("This session, for others to join"));
+  private readonly forClass = linkRow("share-class", t("For a class: plain words and few controls"));
+  private readonly frame = linkRow("share-embed", t("HTML to embed the view in another page"));
+  private readonly permalink = linkRow("share-permalink", t("This state, simulated again when the link is opened"));
 
   constructor(private readonly sharing: Sharing) {
-    const close = make("button", { type: "button", onclick: () => this.element.close() }, "Close");
-    const rerunWords =
-      "Contains scene, parameters and tick. The state is identical, bit for bit, if the parameters have not changed since the start.";
+    const close = make("button", { type: "button", onclick: () => this.element.close() }, t("Close"));
+    const rerunWords = t(
+      "Contains scene, parameters and tick. The state is identical, bit for bit, if the parameters have not changed since the start.",
+    );
     this.element.append(
-      make("header", {}, make("h2", {}, "Share"), close),
+      make("header", {}, make("h2", {}, t("Share")), close),
       this.session.row,
       this.forClass.row,
       this.permalink.row,
       make("p", { className: "faint" }, rerunWords),
       this.frame.row,
-      make("p", { className: "faint" }, "Pages of other origins need phrenicd --allow-origin."),
-      make("h2", {}, "Copy"),
+      make("p", { className: "faint" }, t("Pages of other origins need phrenicd --allow-origin.")),
+      make("h2", {}, t("Copy")),
       make("ul", {}, ...this.copies()),
     );
   }
@@ -59,21 +61,21 @@ export class ShareDialog {
     const here = controller.sessionId;
     return [
       ...this.sharing.rows,
-      action("share-fork", "Your own copy", "A copy in the current state that you own.", "Fork", async () => {
+      action("share-fork", t("Your own copy"), t("A copy in the current state that you own."), t("Fork"), async () => {
         const id = await controller.fork();
         if (id !== undefined) open(`?${new URLSearchParams({ session: id })}`);
       }),
       action(
         "share-compare",
-        "Side by side",
-        "A copy beside this session, with its own parameters and a common camera.",
-        "Compare",
+        t("Side by side"),
+        t("A copy beside this session, with its own parameters and a common camera."),
+        t("Compare"),
         async () => {
           const id = await controller.forkForComparison();
           if (id !== undefined) open(`?${new URLSearchParams({ session: id, beside: here })}`);
         },
       ),
-      action("share-picture", "Screenshot", "The current view as PNG.", "Save", async () => photograph()),
+      action("share-picture", t("Screenshot"), t("The current view as PNG."), t("Save"), async () => photograph()),
     ];
   }
 }
@@ -81,12 +83,12 @@ export class ShareDialog {
 function linkRow(id: string, label: string) {
   const entry = make("input", { type: "text", id, readOnly: true });
   entry.onfocus = () => entry.select();
-  const copy = make("button", { type: "button", ariaLabel: `Copy the link: ${label}` }, "Copy");
+  const copy = make("button", { type: "button", ariaLabel: t("Copy the link: {0}", label) }, t("Copy"));
   copy.onclick = async () => {
     // The clipboard may be unavailable; selected text can always be copied.
     await navigator.clipboard?.writeText(entry.value).catch(() => entry.select());
-    copy.textContent = "Copied";
-    setTimeout(() => (copy.textContent = "Copy"), 1500);
+    copy.textContent = t("Copied");
+    setTimeout(() => (copy.textContent = t("Copy")), 1500);
   };
   return { row: make("div", { className: "link-row" }, make("label", { htmlFor: id }, label), entry, copy), entry };
 }

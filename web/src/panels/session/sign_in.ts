@@ -1,6 +1,7 @@
 import type { Api } from "../../connection/api";
 import type { Credentials } from "../../connection/credentials";
 import { make } from "../../dom/elements";
+import { t } from "../../language/translate";
 
 /** True if the server has no accounts, knows the user, or a join link may be sufficient. */
 async function isAdmitted(api: Api, credentials: Credentials): Promise<boolean> {
@@ -13,10 +14,10 @@ export async function signIn(api: Api, credentials: Credentials, place: HTMLElem
   // Errors of an unreachable server are reported by the next call.
   for (let first = true; !(await isAdmitted(api, credentials).catch(() => true)); first = false) {
     const entry = make("input", { type: "password", autocomplete: "current-password", required: true });
-    const label = make("label", {}, "Your token ", entry);
-    const button = make("button", { type: "submit" }, "Sign in");
+    const label = make("label", {}, t("Your token "), entry);
+    const button = make("button", { type: "submit" }, t("Sign in"));
     const form = make("form", { id: "sign-in" }, label, " ", button);
-    const words = first ? "This server requires an account. " : "No account has this token. ";
+    const words = first ? t("This server requires an account. ") : t("No account has this token. ");
     place.replaceChildren(words, form);
     entry.focus();
     credentials.token = await new Promise<string>((done) => {

@@ -6,14 +6,15 @@ import { presetCauses } from "../../parameters/causes";
 import { activePreset, presetLabel } from "../../parameters/presets";
 import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
+import { t } from "../../language/translate";
 
 /** Choices of a cause that are shown before "More" is pressed. */
 const shownAtFirst = 8;
 
 /** Large buttons that choose a preset, grouped by cause: health, illness, a machine. */
 export class Choices {
-  readonly element = make("section", { id: "choices", ariaLabel: "Choose a breath", hidden: true });
-  private readonly causes = make("div", { className: "causes", ariaLabel: "Cause" });
+  readonly element = make("section", { id: "choices", ariaLabel: t("Choose a breath"), hidden: true });
+  private readonly causes = make("div", { className: "causes", ariaLabel: t("Cause") });
   private readonly list = make("div", { className: "choice-list" });
   private readonly description = make("p", { id: "choice-description" });
   private readonly tabStops = [oneTabStop(this.causes), oneTabStop(this.list)];
@@ -40,7 +41,8 @@ export class Choices {
   /** Shows the cause of the active preset when another one becomes active. */
   private follow(all: Preset[], parameters: Parameters | undefined): void {
     const active = activePreset(all, parameters);
-    this.description.textContent = active?.description ?? "Your own breath, by the three sliders.";
+    this.description.textContent =
+      active === undefined ? t("Your own breath, by the three sliders.") : t(active.description);
     if (active !== this.active) {
       this.active = active;
       const [cause, members] = [...this.members].find(([, each]) => active && each.includes(active)) ?? [
@@ -61,7 +63,7 @@ export class Choices {
     this.causes.replaceChildren(...[...this.members.keys()].map((each) => this.causeButton(each)));
     const members = this.members.get(cause) ?? [];
     const shown = this.unfolded ? members : members.slice(0, shownAtFirst);
-    this.list.ariaLabel = cause;
+    this.list.ariaLabel = t(cause);
     this.list.replaceChildren(...shown.map((preset) => this.presetButton(preset)));
     if (members.length > shownAtFirst) this.list.append(this.moreButton(members.length - shownAtFirst));
     // A choice keeps the focus when the list is written again.
@@ -75,13 +77,13 @@ export class Choices {
       this.show(cause);
       this.causes.querySelector<HTMLElement>('[aria-pressed="true"]')?.focus();
     };
-    return make("button", { type: "button", ariaPressed: String(cause === this.cause), onclick }, cause);
+    return make("button", { type: "button", ariaPressed: String(cause === this.cause), onclick }, t(cause));
   }
 
   private presetButton(preset: Preset): HTMLElement {
     const onclick = () => void this.controller.usePreset(preset.name);
     const ariaPressed = String(preset === this.active);
-    const element = make("button", { type: "button", title: preset.description, ariaPressed, onclick });
+    const element = make("button", { type: "button", title: t(preset.description), ariaPressed, onclick });
     element.append(presetLabel(preset));
     element.dataset.preset = preset.name;
     return element;
@@ -94,7 +96,7 @@ export class Choices {
       this.list.querySelector<HTMLElement>(".more")?.focus();
     };
     const ariaExpanded = String(this.unfolded);
-    const words = this.unfolded ? "Fewer" : `${count} more`;
+    const words = this.unfolded ? t("Fewer") : t("{0} more", count);
     return make("button", { type: "button", className: "more", ariaExpanded, onclick }, words);
   }
 }

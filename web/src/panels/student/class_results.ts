@@ -4,6 +4,7 @@ import { alertMessage, switchRow } from "../../dom/rows";
 import { AnswerPhase, type ClassAnswer } from "../../gen/phrenic/v1/answers_pb";
 import type { Lesson, Question } from "../../gen/phrenic/v1/lesson_pb";
 import { answersCsv, compareTests, summaryOf } from "../../session/answer_summary";
+import { decimal, t } from "../../language/translate";
 
 /** Time between two questions to the server while the results are open [ms]. */
 const refreshInterval = 2000;
@@ -24,15 +25,15 @@ export class ClassResults {
   private answers: ClassAnswer[] = [];
 
   constructor(private readonly list: ListAnswers) {
-    const help = "Shows who gave which answer, of those who gave a name";
-    const { row, input } = switchRow("Names", help, () => {
+    const help = t("Shows who gave which answer, of those who gave a name");
+    const { row, input } = switchRow(t("Names"), help, () => {
       this.fault.replaceChildren();
       void this.refresh();
     });
     this.names = input;
-    const save = make("button", { type: "button", onclick: () => this.save() }, "Save as CSV");
+    const save = make("button", { type: "button", onclick: () => this.save() }, t("Save as CSV"));
     this.tools = make("div", { className: "row" }, row, save);
-    this.element.append(make("summary", {}, "Answers of the class"), this.body, this.fault, this.tools);
+    this.element.append(make("summary", {}, t("Answers of the class")), this.body, this.fault, this.tools);
     this.element.ontoggle = () => this.watch();
   }
 
@@ -88,19 +89,29 @@ export class ClassResults {
     const percent = (share: number) => `${Math.round(100 * share)} %`;
     if (tests !== undefined) {
       const gain = Math.round(100 * (tests.after - tests.before));
-      const words = `Tests of ${tests.respondents}: ${percent(tests.before)} right before the lesson, ${percent(tests.after)} after it (${gain >= 0 ? "+" : "−"}${Math.abs(gain)} points).`;
+      const points = `${gain >= 0 ? "+" : "−"}${Math.abs(gain)}`;
+      const words = t(
+        "Tests of {0}: {1} right before the lesson, {2} after it ({3} points).",
+        tests.respondents,
+        percent(tests.before),
+        percent(tests.after),
+        points,
+      );
       parts.push(make("p", { id: "class-tests" }, words));
     }
-    return parts.length > 0 ? parts : [make("p", {}, "This step has no question.")];
+    return parts.length > 0 ? parts : [make("p", {}, t("This step has no question."))];
   }
 
   private ofQuestion(question: Question, step: number): HTMLElement[] {
     const { answered, right, firstRight, counts, numbers } = summaryOf(this.answers, step, question);
-    if (answered === 0) return [make("p", {}, "No answer yet.")];
-    const words = make("p", {}, `${answered} answered, ${right} right, ${firstRight} at the first attempt.`);
+    if (answered === 0) return [make("p", {}, t("No answer yet."))];
+    const words = make("p", {}, t("{0} answered, {1} right, {2} at the first attempt.", answered, right, firstRight));
     const bars = question.answers.map((each, i) => bar(each.words, counts[i], answered, each.right));
     const unit = question.number?.unit ?? "";
-    const given = numbers.length === 0 ? [] : [make("p", {}, `Numbers [${unit}]: ${numbers.join(", ")}`)];
+    const given =
+      numbers.length === 0
+        ? []
+        : [make("p", {}, t("Numbers [{0}]: {1}", unit, numbers.map((each) => decimal(String(each))).join("; ")))];
     return [words, ...bars, ...given, ...this.named(question, step)];
   }
 
@@ -109,8 +120,11 @@ export class ClassResults {
     const rows = this.answers
       .filter((each) => each.step === step && each.phase === AnswerPhase.UNSPECIFIED)
       .map(({ name, respondent, choices, number, right }) => {
-        const words = number ?? choices.map((i) => question.answers[i]?.words ?? "").join("; ");
-        return make("li", {}, `${name || `Number ${respondent}`}: ${words}${right ? " ✓" : ""}`);
+        const words =
+          number !== undefined
+            ? decimal(String(number))
+            : choices.map((i) => question.answers[i]?.words ?? "").join("; ");
+        return make("li", {}, `${name || t("Number {0}", respondent)}: ${words}${right ? " ✓" : ""}`);
       });
     return [make("ul", {}, ...rows)];
   }
@@ -126,7 +140,7 @@ export class ClassResults {
 }
 
 function bar(words: string, count: number, of: number, right: boolean): HTMLElement {
-  const meter = make("progress", { max: of, value: count, ariaLabel: `${count} of ${of}: ${words}` });
+  const meter = make("progress", { max: of, value: count, ariaLabel: t("{0} of {1}: {2}", count, of, words) });
   return make(
     "div",
     { className: "answer-bar" },

@@ -2,6 +2,7 @@ import { make } from "../../dom/elements";
 import type { Preset } from "../../gen/phrenic/v1/scene_pb";
 import type { SessionController } from "../../session/session_controller";
 import type { Signal } from "../../state/signal";
+import { t } from "../../language/translate";
 
 /** What the button acts on. */
 export interface HealthyComparison {
@@ -18,7 +19,7 @@ export interface HealthyComparison {
  * second view, it ends the comparison. Hidden for a scene without presets.
  */
 export function compareButton({ controller, presets, open, close }: HealthyComparison): HTMLButtonElement {
-  const words = close === undefined ? "Compare with healthy" : "End the comparison";
+  const words = close === undefined ? t("Compare with healthy") : t("End the comparison");
   const button = make("button", { type: "button", id: "compare-healthy", className: "primary", title: `${words} (B)` });
   button.append(words);
   presets.subscribe((all) => (button.hidden = all.length === 0 && close === undefined));

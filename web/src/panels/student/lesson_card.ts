@@ -14,6 +14,7 @@ import { questionForm } from "./question_form";
 import type { KeepView } from "./step_form";
 import { StepPictures } from "./step_pictures";
 import { openWorksheet } from "./worksheet_page";
+import { t } from "../../language/translate";
 
 /** What a lesson does to the page, and where it comes from. */
 export interface LessonActions {
@@ -39,7 +40,7 @@ export interface LessonActions {
 
 /** The list of lessons, the lesson that is played, and the form that makes one. */
 export class LessonCard {
-  readonly element = make("section", { id: "lesson", ariaLabel: "Lesson" });
+  readonly element = make("section", { id: "lesson", ariaLabel: t("Lesson") });
   /** The lesson and step that are loaded or shown; undefined without a lesson. */
   readonly place = new Signal<LessonPlace | undefined>(undefined);
   private readonly list: LessonList;
@@ -73,7 +74,7 @@ export class LessonCard {
       this.show({ name, step: Math.min(step, lesson.steps.length) });
     } catch (error) {
       this.leave();
-      this.element.append(alertMessage(`This lesson cannot be played: ${(error as Error).message}.`));
+      this.element.append(alertMessage(t("This lesson cannot be played: {0}.", (error as Error).message)));
     }
   }
 
@@ -105,7 +106,7 @@ export class LessonCard {
   private async load(name: string): Promise<Lesson> {
     const own = this.actions.own.get(name);
     if (own !== undefined) return own;
-    if (name.startsWith("my-")) throw new Error("it is kept in another browser: open its file here");
+    if (name.startsWith("my-")) throw new Error(t("it is kept in another browser: open its file here"));
     return loadLesson(name, this.actions.fetchFile);
   }
 
@@ -115,7 +116,7 @@ export class LessonCard {
     if (lesson === undefined || step === undefined) return;
     this.place.set(place);
     const title = make("h3", { tabIndex: -1 }, step.title);
-    const task = step.task === "" ? [] : [make("p", { className: "task" }, make("b", {}, "Try: "), step.task)];
+    const task = step.task === "" ? [] : [make("p", { className: "task" }, make("b", {}, t("Try: ")), step.task)];
     const answered = (answer: GivenAnswer) => this.send(place.step, AnswerPhase.UNSPECIFIED, answer);
     const question = step.question === undefined ? [] : [questionForm(step.question, answered), answerNote()];
     const caption = make("p", { className: "caption" }, step.caption);
@@ -140,7 +141,7 @@ export class LessonCard {
         this.before = score;
         this.show(place);
       });
-    return [make("button", { type: "button", id: "lesson-pretest", onclick }, "Answer the questions first")];
+    return [make("button", { type: "button", id: "lesson-pretest", onclick }, t("Answer the questions first"))];
   }
 
   private showTest(phase: AnswerPhase.BEFORE | AnswerPhase.AFTER, done: (score: Score) => void): void {
@@ -148,7 +149,7 @@ export class LessonCard {
     if (lesson === undefined) return;
     const test = lessonTest(lesson, phase, (...answer) => this.send(...answer), done);
     const head = make("header", {}, make("h2", {}, lesson.title));
-    const leave = make("button", { type: "button", onclick: () => this.leave() }, "Leave");
+    const leave = make("button", { type: "button", onclick: () => this.leave() }, t("Leave"));
     this.element.replaceChildren(head, test, leave);
     test.querySelector<HTMLElement>("h3")?.focus();
   }
@@ -167,23 +168,31 @@ export class LessonCard {
 
   private head(lesson: Lesson, { step }: LessonPlace): HTMLElement {
     const count = lesson.steps.length;
-    const bar = make("progress", { max: count, value: step, ariaLabel: "Progress of the lesson" });
-    return make("header", {}, make("h2", {}, lesson.title), make("span", {}, `Step ${step} of ${count}`), bar);
+    const bar = make("progress", { max: count, value: step, ariaLabel: t("Progress of the lesson") });
+    return make("header", {}, make("h2", {}, lesson.title), make("span", {}, t("Step {0} of {1}", step, count)), bar);
   }
 
   private buttons({ step }: LessonPlace): HTMLElement {
     const last = step === this.lesson?.steps.length;
-    const back = make("button", { type: "button", id: "lesson-back", onclick: () => this.move(-1) }, "Back");
+    const back = make(
+      "button",
+      { type: "button", id: "lesson-back", onclick: () => this.move(-1) },
+      t("Back |to the step before"),
+    );
     back.disabled = step === 1;
-    const next = make("button", { type: "button", id: "lesson-next", className: "primary" }, last ? "Finish" : "Next");
+    const next = make(
+      "button",
+      { type: "button", id: "lesson-next", className: "primary" },
+      last ? t("Finish") : t("Next"),
+    );
     next.onclick = () => (last ? this.finish() : this.move(1));
-    const leave = make("button", { type: "button", id: "lesson-leave", onclick: () => this.leave() }, "Leave");
+    const leave = make("button", { type: "button", id: "lesson-leave", onclick: () => this.leave() }, t("Leave"));
     return make("div", { className: "lesson-buttons" }, back, leave, next);
   }
 
   private printButton(): HTMLElement {
     const onclick = () => void this.print();
-    return make("button", { type: "button", id: "lesson-print", onclick }, "Print a worksheet");
+    return make("button", { type: "button", id: "lesson-print", onclick }, t("Print a worksheet"));
   }
 
   private leave(): void {
@@ -221,6 +230,6 @@ export class LessonCard {
 }
 
 function answerNote(): HTMLElement {
-  const words = "Your teacher can see your answer, with your name only if you gave one.";
+  const words = t("Your teacher can see your answer, with your name only if you gave one.");
   return make("p", { className: "faint" }, words);
 }

@@ -5,6 +5,7 @@ import { readLessonFile } from "../../session/lesson_file";
 import { checkLesson, type FetchJson, lessonNames, loadLesson, type SceneNames } from "../../session/lessons";
 import type { OwnLessons } from "../../session/own_lessons";
 import { saveAsFile } from "./lesson_maker";
+import { t } from "../../language/translate";
 
 /** Where the lessons of the list come from. */
 export interface LessonSources {
@@ -33,11 +34,11 @@ export class LessonList {
   ) {
     const file = make("input", { type: "file", id: "lesson-file", accept: ".json,application/json" });
     file.onchange = () => void this.open(file);
-    const open = make("label", { htmlFor: file.id }, "Open a lesson's file");
-    const begin = make("button", { type: "button", id: "make-lesson" }, "Make a lesson");
+    const open = make("label", { htmlFor: file.id }, t("Open a lesson's file"));
+    const begin = make("button", { type: "button", id: "make-lesson" }, t("Make a lesson"));
     begin.onclick = () => this.events.make(undefined);
     const actions = make("div", { className: "lesson-files" }, begin, open, file);
-    this.element.append(make("summary", {}, "Lessons"), this.shipped, this.own, actions, this.fault);
+    this.element.append(make("summary", {}, t("Lessons")), this.shipped, this.own, actions, this.fault);
     this.element.ontoggle = () => {
       if (this.element.open) void this.fill();
     };
@@ -59,10 +60,10 @@ export class LessonList {
       const all = await lessonNames(fetchFile);
       const lessons = await Promise.all(all.map((name) => loadLesson(name, fetchFile)));
       const rows = lessons.flatMap((lesson, i) => (lesson.scene === scene ? [this.row(all[i], lesson)] : []));
-      const none = make("li", {}, `There is no lesson about the scene “${scene}”.`);
+      const none = make("li", {}, t("There is no lesson about the scene “{0}”.", scene));
       this.shipped.replaceChildren(...(rows.length > 0 ? rows : [none]));
     } catch (error) {
-      const words = `The lessons cannot be listed: ${(error as Error).message}.`;
+      const words = t("The lessons cannot be listed: {0}.", (error as Error).message);
       this.shipped.replaceChildren(make("li", {}, alertMessage(words)));
     }
   }
@@ -81,9 +82,9 @@ export class LessonList {
       row.remove();
     };
     const acts: [verb: string, act: () => void][] = [
-      ["Change", () => this.events.make(lesson)],
-      ["Save as file", () => saveAsFile(lesson)],
-      ["Delete", remove],
+      [t("Change"), () => this.events.make(lesson)],
+      [t("Save as file"), () => saveAsFile(lesson)],
+      [t("Delete"), remove],
     ];
     const buttons = acts.map(([verb, onclick]) =>
       make("button", { type: "button", className: "small", ariaLabel: `${verb}: ${lesson.title}`, onclick }, verb),
@@ -102,7 +103,7 @@ export class LessonList {
       this.fault.replaceChildren();
       this.events.start(this.sources.own.put(lesson));
     } catch (error) {
-      this.fault.replaceChildren(alertMessage(`The lesson cannot be opened: ${(error as Error).message}.`));
+      this.fault.replaceChildren(alertMessage(t("The lesson cannot be opened: {0}.", (error as Error).message)));
     }
     input.value = "";
   }

@@ -3,6 +3,7 @@ import { AnswerPhase } from "../../gen/phrenic/v1/answers_pb";
 import type { Lesson } from "../../gen/phrenic/v1/lesson_pb";
 import type { GivenAnswer } from "../../session/class_answers";
 import { questionFields } from "./question_form";
+import { t } from "../../language/translate";
 
 /** How many of a test's questions were answered rightly. */
 export interface Score {
@@ -32,8 +33,8 @@ export function lessonTest(
     question === undefined ? [] : [{ step: i + 1, ...questionFields(question, `test-${i}`) }],
   );
   const groups = asked.map(({ legend, rows }) => make("fieldset", { className: "question" }, legend, ...rows));
-  const hand = make("button", { type: "submit", className: "primary" }, "Hand in");
-  const words = phase === AnswerPhase.BEFORE ? "What do you think before the lesson?" : "And now?";
+  const hand = make("button", { type: "submit", className: "primary" }, t("Hand in"));
+  const words = phase === AnswerPhase.BEFORE ? t("What do you think before the lesson?") : t("And now?");
   const title = make("h3", { tabIndex: -1 }, words);
   const form = make("form", { id: "lesson-test" }, title, ...groups, hand);
   form.onsubmit = (event) => {
@@ -48,6 +49,7 @@ export function lessonTest(
 /** Returns the difference of two tests in words. */
 export function differenceWords(before: Score, after: Score): string {
   const more = after.right - before.right;
-  const change = more === 0 ? "as many" : more > 0 ? `${more} more` : `${-more} fewer`;
-  return `Before the lesson ${before.right} of ${before.of} right, after it ${after.right} of ${after.of}: ${change}.`;
+  const change = more === 0 ? t("as many") : more > 0 ? t("{0} more", more) : t("{0} fewer", -more);
+  const words = "Before the lesson {0} of {1} right, after it {2} of {3}: {4}.";
+  return t(words, before.right, before.of, after.right, after.of, change);
 }

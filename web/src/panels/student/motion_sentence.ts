@@ -6,6 +6,7 @@ import { motionWords } from "../../graphs/motion_words";
 import { motionKeys } from "../../graphs/student_graphs";
 import { breathLengthOf } from "../../parameters/effort";
 import type { TimeSeries } from "../../state/time_series";
+import { t } from "../../language/translate";
 
 /** A session whose breath is told in words. */
 export interface BreathSource {
@@ -45,7 +46,7 @@ export class MotionSentence {
     const [own, other] = [here, beside].map((each, i) => each && this.motionOf(each, this.changes[i]));
     const waiting = own === undefined || (beside !== undefined && other === undefined);
     const words = waiting
-      ? "Wait for a whole breath …"
+      ? t("Wait for a whole breath …")
       : motionWords(own, beside && other && { label: beside.label, motion: other });
     const changed = this.changes.some((each) => each.takeChange());
     if (!changed && !waiting && this.told !== "" && Math.abs(now - this.toldAt) < interval) return;

@@ -3,6 +3,7 @@ import { Prediction } from "../../graphs/prediction";
 import { breathLengthOf } from "../../parameters/effort";
 import type { SessionController } from "../../session/session_controller";
 import type { TimeSeries } from "../../state/time_series";
+import { fixed, t } from "../../language/translate";
 
 /** What a prediction is about. */
 export interface PredictionSource {
@@ -26,13 +27,17 @@ const recent = 8;
  * curves and their mean distance.
  */
 export class PredictionPad {
-  readonly element = make("section", { id: "prediction", ariaLabel: "Predict the next breath" });
+  readonly element = make("section", { id: "prediction", ariaLabel: t("Predict the next breath") });
   private readonly svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   private readonly drawn = polyline("drawn");
   private readonly seen = polyline("seen");
   private readonly words = make("p", { id: "prediction-words" });
-  private readonly begin = make("button", { type: "button", id: "predict" }, "Predict the next breath");
-  private readonly play = make("button", { type: "button", id: "predict-play", className: "primary" }, "Play and see");
+  private readonly begin = make("button", { type: "button", id: "predict" }, t("Predict the next breath"));
+  private readonly play = make(
+    "button",
+    { type: "button", id: "predict-play", className: "primary" },
+    t("Play and see"),
+  );
   private prediction: Prediction | undefined;
   private range: [low: number, high: number] = [0, 1];
   private cursor = 0;
@@ -46,7 +51,7 @@ export class PredictionPad {
     this.svg.setAttribute("tabindex", "0");
     this.svg.setAttribute(
       "aria-label",
-      "Air in the lungs that you expect; left and right choose a time, up and down the air",
+      t("Air in the lungs that you expect; left and right choose a time, up and down the air"),
     );
     this.svg.append(this.drawn, this.seen);
     this.svg.addEventListener("pointerdown", (event) => this.onPointer(event, true));
@@ -103,16 +108,16 @@ export class PredictionPad {
 
   private tell(distance: number): void {
     this.show("done");
-    const litres = (1000 * distance).toFixed(2);
-    this.words.textContent = `Dashed: your curve. Solid: the breath. On average they are ${litres} l apart.`;
+    const litres = fixed(1000 * distance, 2);
+    this.words.textContent = t("Dashed: your curve. Solid: the breath. On average they are {0} l apart.", litres);
   }
 
   private show(phase: PredictionPad["phase"]): void {
     this.phase = phase;
     this.svg.toggleAttribute("hidden", phase === "idle");
     this.play.hidden = phase !== "drawing";
-    this.begin.textContent = phase === "idle" ? "Predict the next breath" : "Predict again";
-    const words = { idle: "", drawing: hint, playing: "The breath is played …", done: "" };
+    this.begin.textContent = phase === "idle" ? t("Predict the next breath") : t("Predict again");
+    const words = { idle: "", drawing: t(hint), playing: t("The breath is played …"), done: "" };
     this.words.textContent = words[phase];
   }
 
@@ -154,8 +159,8 @@ export class PredictionPad {
     const corners = values.map((value, i) => this.pixel(prediction, prediction.timeOf(i), value));
     this.drawn.setAttribute("points", corners.join(" "));
     const [low, high] = this.range.map((each) => (1000 * each).toFixed(2));
-    const seconds = (prediction.timeOf(cursor) - prediction.start).toFixed(1);
-    const text = `after ${seconds} s: ${(1000 * values[cursor]).toFixed(2)} l`;
+    const seconds = fixed(prediction.timeOf(cursor) - prediction.start, 1);
+    const text = t("after {0} s: {1} l", seconds, fixed(1000 * values[cursor], 2));
     for (const [name, value] of [
       ["valuemin", low],
       ["valuemax", high],

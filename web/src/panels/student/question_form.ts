@@ -2,6 +2,7 @@ import { make } from "../../dom/elements";
 import type { Question } from "../../gen/phrenic/v1/lesson_pb";
 import type { GivenAnswer } from "../../session/class_answers";
 import { rightAnswers, rightNumber } from "../../session/lessons";
+import { t } from "../../language/translate";
 
 /**
  * A question with its answers, a button that checks them, and the explanation; it can be tried again. Calls `answered`
@@ -11,15 +12,17 @@ export function questionForm(question: Question, answered: (answer: GivenAnswer)
   const result = make("p", { className: "answer" });
   result.setAttribute("role", "status");
   const { legend, rows, given } = questionFields(question, "answer");
-  const check = make("button", { type: "submit" }, "Check");
+  const check = make("button", { type: "submit" }, t("Check"));
   const form = make("form", {}, make("fieldset", { className: "question" }, legend, ...rows, check, result));
   form.onsubmit = (event) => {
     event.preventDefault();
     const answer = given();
     result.textContent =
       answer === undefined
-        ? "Choose an answer first."
-        : `${answer.right ? "Right." : "Not yet."} ${answer.right ? question.explanation : "Try again."}`;
+        ? t("Choose an answer first.")
+        : answer.right
+          ? `${t("Right.")} ${question.explanation}`
+          : `${t("Not yet.")} ${t("Try again.")}`;
     result.dataset.right = String(answer?.right === true);
     if (answer !== undefined) answered(answer);
   };
@@ -53,7 +56,7 @@ function choiceRows(question: Question, name: string): Omit<QuestionFields, "leg
 
 function numberRow(question: Question): Omit<QuestionFields, "legend"> {
   const unit = question.number?.unit ?? "";
-  const input = make("input", { type: "number", step: "any", ariaLabel: `Your answer in ${unit}` });
+  const input = make("input", { type: "number", step: "any", ariaLabel: t("Your answer in {0}", unit) });
   const given = () => {
     const number = input.valueAsNumber;
     return Number.isNaN(number) ? undefined : { choices: [], number, right: rightNumber(question, number) };

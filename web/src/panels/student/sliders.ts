@@ -4,6 +4,7 @@ import { cmH2O } from "../../graphs/units";
 import { activationsOf, effortOf } from "../../parameters/effort";
 import type { SessionController } from "../../session/session_controller";
 import type { Values } from "../../state/undo_history";
+import { fixed, t } from "../../language/translate";
 
 /** Range of the rate [1/min] and the largest pressure of the machine [cmH2O]. */
 const [slowest, quickest, strongest] = [4, 60, 25];
@@ -27,13 +28,13 @@ interface Reading {
 export function sliders(controller: SessionController): HTMLElement {
   let belly = 0.5; // the share that a breath from rest takes
   const value = () => controller.session.value?.parameters;
-  const depth = slider("depth", { label: "How deep", low: "shallow", high: "deep" }, (position) =>
+  const depth = slider("depth", { label: t("How deep"), low: t("shallow"), high: t("deep") }, (position) =>
     controller.setTogether(depthValues(value(), position, belly)),
   );
-  const rate = slider("rate", { label: "How fast", low: "slow", high: "fast" }, (position) =>
+  const rate = slider("rate", { label: t("How fast"), low: t("slow"), high: t("fast") }, (position) =>
     controller.setTogether({ breathLength: Number((60 / rateAt(position)).toFixed(2)) }),
   );
-  const share = slider("share", { label: "Chest or belly", low: "chest", high: "belly" }, (position) =>
+  const share = slider("share", { label: t("Chest or belly"), low: t("chest"), high: t("belly") }, (position) =>
     controller.setTogether(activationsOf(effortOf(value() ?? ({} as Parameters)).depth, position)),
   );
   controller.session.subscribe((session) => {
@@ -48,7 +49,7 @@ export function sliders(controller: SessionController): HTMLElement {
     rate.show(rateReading(parameters));
     share.show(shareReading(parameters));
   });
-  return make("section", { id: "efforts", ariaLabel: "How to breathe" }, depth.element, rate.element, share.element);
+  return make("section", { id: "efforts", ariaLabel: t("How to breathe") }, depth.element, rate.element, share.element);
 }
 
 /** True if a machine breathes and the muscles rest. */
@@ -65,10 +66,10 @@ function depthValues(of: Parameters | undefined, position: number, belly: number
 function depthReading(of: Parameters): Reading {
   const pressure = (of.ventilatorPressure ?? 0) / cmH2O;
   if (ventilated(of))
-    return { position: pressure / strongest, text: `the machine pushes with ${pressure.toFixed(0)} cmH₂O` };
+    return { position: pressure / strongest, text: t("the machine pushes with {0} cmH₂O", fixed(pressure, 0)) };
   const { depth } = effortOf(of);
   const percent = 100 * depth;
-  return { position: Math.sqrt(depth), text: `${percent.toFixed(percent < 10 ? 1 : 0)} % of full effort` };
+  return { position: Math.sqrt(depth), text: t("{0} % of full effort", fixed(percent, percent < 10 ? 1 : 0)) };
 }
 
 const rateAt = (position: number) => slowest * (quickest / slowest) ** position;
@@ -76,13 +77,13 @@ const rateAt = (position: number) => slowest * (quickest / slowest) ** position;
 function rateReading(of: Parameters): Reading {
   const { rate } = effortOf(of);
   const position = Math.log(rate / slowest) / Math.log(quickest / slowest);
-  return { position, text: `${rate.toFixed(0)} breaths a minute` };
+  return { position, text: t("{0} breaths a minute", fixed(rate, 0)) };
 }
 
 function shareReading(of: Parameters): Reading | undefined {
   const { belly } = effortOf(of);
   if (belly === undefined) return undefined;
-  return { position: belly, text: `${(100 * belly).toFixed(0)} % belly` };
+  return { position: belly, text: t("{0} % belly", fixed(100 * belly, 0)) };
 }
 
 function slider(name: string, { label, low, high }: Words, changed: (position: number) => void) {
@@ -96,7 +97,7 @@ function slider(name: string, { label, low, high }: Words, changed: (position: n
   const fill = (position: number) => input.style.setProperty("--filled", `${(100 * position).toFixed(1)}%`);
   const show = (reading: Reading | undefined) => {
     input.disabled = reading === undefined;
-    output.textContent = reading?.text ?? "the muscles rest";
+    output.textContent = reading?.text ?? t("the muscles rest");
     input.setAttribute("aria-valuetext", output.textContent);
     if (reading === undefined) return;
     const position = Math.min(1, Math.max(0, reading.position));

@@ -1,8 +1,9 @@
 import { create } from "@bufbuild/protobuf";
 import { make } from "../../dom/elements";
 import { alertMessage, labelledRow } from "../../dom/rows";
-import { type LessonStep, LessonStepSchema, QuestionSchema } from "../../gen/phrenic/v1/lesson_pb";
+import { type LessonStep, LessonStepSchema, type Question, QuestionSchema } from "../../gen/phrenic/v1/lesson_pb";
 import { faultOfStep } from "../../session/lesson_file";
+import { t } from "../../language/translate";
 
 /** What is shown now: view, preset and parameters, without words. */
 export type KeepView = () => Promise<LessonStep>;
@@ -17,50 +18,83 @@ function textRow(id: string, label: string, placeholder = ""): { row: HTMLElemen
 export class StepForm {
   readonly element = make("form", { id: "step-form" });
   private readonly title = make("input", { type: "text", id: "step-title", maxLength: 200 });
-  private readonly caption = textRow("step-caption", "Caption: what is seen, and why");
-  private readonly task = textRow("step-task", "Task (may be empty)");
+  private readonly caption = textRow("step-caption", t("Caption: what is seen, and why"));
+  private readonly task = textRow("step-task", t("Task (may be empty)"));
   private readonly words = make("input", { type: "text", id: "step-question", maxLength: 500 });
   private readonly answers = textRow(
     "step-answers",
-    "Answers: one a line, * before each right one; or one number, ± and its tolerance, and its unit",
-    "The left half pushes it.\n* It cannot pull against the pressure.",
+    t("Answers: one a line, * before each right one; or one number, ± and its tolerance, and its unit"),
+    t("The left half pushes it.\n* It cannot pull against the pressure."),
   );
   private readonly explanation = make("input", { type: "text", id: "step-explanation", maxLength: 1000 });
+  private readonly question = make("details");
   private readonly fault = make("div");
+  private readonly submit = make("button", { type: "submit", id: "keep-view" });
+  private readonly cancel = make("button", { type: "button", id: "keep-old-words" }, t("Cancel"));
+  /** The kept step whose words are changed; undefined while the next step is made. */
+  private edited: LessonStep | undefined;
 
-  /** Calls `add` with each step that is kept. */
+  /** Calls `done` with each step that is kept, and with the one that it replaces if only its words were changed. */
   constructor(
     private readonly keep: KeepView,
-    private readonly add: (step: LessonStep) => void,
+    private readonly done: (step: LessonStep, before: LessonStep | undefined) => void,
   ) {
-    const question = make(
-      "details",
-      {},
-      make("summary", {}, "A question"),
-      labelledRow("step-question", "Question", this.words),
+    this.question.append(
+      make("summary", {}, t("A question")),
+      labelledRow("step-question", t("Question"), this.words),
       this.answers.row,
-      labelledRow("step-explanation", "Why it is right", this.explanation),
+      labelledRow("step-explanation", t("Why it is right"), this.explanation),
     );
-    const submit = make("button", { type: "submit", id: "keep-view" }, "Keep this view as a step");
-    const rows = [labelledRow("step-title", "Title of the step", this.title), this.caption.row, this.task.row];
-    this.element.append(...rows, question, this.fault, submit);
+    const rows = [labelledRow("step-title", t("Title of the step"), this.title), this.caption.row, this.task.row];
+    this.element.append(...rows, this.question, this.fault, this.submit, this.cancel);
+    this.cancel.onclick = () => this.begin(undefined);
+    this.begin(undefined);
     this.element.onsubmit = (event) => {
       event.preventDefault();
-      void this.submit();
+      void this.finish();
     };
   }
 
-  private async submit(): Promise<void> {
-    const step = create(LessonStepSchema, { ...(await this.keep()), ...this.texts() });
-    const fault = this.questionFault() ?? faultOfStep(step);
-    this.fault.replaceChildren(...(fault === undefined ? [] : [alertMessage(`The step cannot be kept: ${fault}.`)]));
-    if (fault !== undefined) return;
+  /** Shows the words of a kept step to change them; its view stays as it was kept. */
+  edit(step: LessonStep): void {
+    this.begin(step);
+    this.title.focus();
+  }
+
+  /** Leaves the words of a step that is removed. */
+  forget(step: LessonStep): void {
+    if (step === this.edited) this.begin(undefined);
+  }
+
+  private begin(step: LessonStep | undefined): void {
+    this.edited = step;
     this.element.reset();
-    this.add(step);
+    this.fault.replaceChildren();
+    this.submit.textContent = step === undefined ? t("Keep this view as a step") : t("Change the words of this step");
+    this.cancel.hidden = step === undefined;
+    if (step === undefined) return;
+    const { title, caption, task, question } = step;
+    [this.title.value, this.caption.field.value, this.task.field.value] = [title, caption, task];
+    this.question.open = question !== undefined;
+    this.words.value = question?.words ?? "";
+    this.explanation.value = question?.explanation ?? "";
+    this.answers.field.value = question === undefined ? "" : answersText(question);
+  }
+
+  private async finish(): Promise<void> {
+    const before = this.edited;
+    const step = create(LessonStepSchema, { ...(before ?? (await this.keep())), ...this.texts() });
+    const fault = this.questionFault() ?? faultOfStep(step);
+    this.fault.replaceChildren(
+      ...(fault === undefined ? [] : [alertMessage(t("The step cannot be kept: {0}.", fault))]),
+    );
+    if (fault !== undefined) return;
+    this.begin(undefined);
+    this.done(step, before);
   }
 
   private texts() {
-    const question = this.words.value.trim() === "" ? undefined : this.question();
+    const question = this.words.value.trim() === "" ? undefined : this.asked();
     const [title, caption, task] = [this.title, this.caption.field, this.task.field].map(({ value }) => value.trim());
     return { title, caption, task, question };
   }
@@ -68,13 +102,19 @@ export class StepForm {
   /** Answers without a question would be lost. */
   private questionFault(): string | undefined {
     const lost = this.words.value.trim() === "" && this.answers.field.value.trim() !== "";
-    return lost ? "question.words: there are answers without a question" : undefined;
+    return lost ? t("question.words: there are answers without a question") : undefined;
   }
 
-  private question() {
+  private asked() {
     const [words, explanation] = [this.words.value.trim(), this.explanation.value.trim()];
     return create(QuestionSchema, { words, explanation, ...answersOf(this.answers.field.value) });
   }
+}
+
+/** Returns the answers of a question as `answersOf` reads them. */
+export function answersText({ answers, number }: Question): string {
+  if (number !== undefined) return `${number.value} ± ${number.tolerance} ${number.unit}`.trim();
+  return answers.map(({ words, right }) => (right ? `* ${words}` : words)).join("\n");
 }
 
 /** Returns the answers of a text, one a line with "*" before right ones; or a number, as "1.5 ± 0.2 l". */

@@ -4,6 +4,7 @@ import type { GraphSpec } from "../../graphs/catalogue";
 import { besideGraph, joinSeries, studentGraphs } from "../../graphs/student_graphs";
 import { TimeSeries } from "../../state/time_series";
 import { GraphTile } from "../readings/graph_tile";
+import { t } from "../../language/translate";
 
 /** Time shown [simulated s]. */
 const span = 12;
@@ -16,9 +17,9 @@ export interface SeriesBeside {
 
 /** Two graphs: lung volume, and the domes or the pressure. A second session has dashed curves in the same graphs. */
 export class StudentGraphsPanel {
-  readonly element = make("section", { id: "student-graphs", ariaLabel: "Graphs" });
+  readonly element = make("section", { id: "student-graphs", ariaLabel: t("Graphs") });
   private readonly tiles = make("div");
-  private readonly kinds = make("div", { className: "causes kinds", role: "group", ariaLabel: "Second graph" });
+  private readonly kinds = make("div", { className: "causes kinds", role: "group", ariaLabel: t("Second graph") });
   private readonly joined = new TimeSeries(2 * span);
   private specs: ReturnType<typeof studentGraphs> = { volume: undefined, others: [] };
   private shown: GraphTile[] = [];
@@ -33,7 +34,7 @@ export class StudentGraphsPanel {
     private readonly beside: SeriesBeside | undefined,
     private readonly fileName: () => string,
   ) {
-    this.element.append(make("h2", { className: "unseen" }, "Graphs"), this.tiles, this.kinds);
+    this.element.append(make("h2", { className: "unseen" }, t("Graphs")), this.tiles, this.kinds);
   }
 
   /** Reads the available graphs from a frame. */
@@ -77,7 +78,7 @@ export class StudentGraphsPanel {
   }
 
   private withBeside(spec: GraphSpec): GraphSpec {
-    return this.beside === undefined ? spec : besideGraph(spec, "chosen", this.label);
+    return this.beside === undefined ? spec : besideGraph(spec, t("chosen"), this.label);
   }
 
   private kindButton(title: string, i: number): HTMLElement {
@@ -87,6 +88,6 @@ export class StudentGraphsPanel {
       this.draw();
       this.kinds.querySelectorAll("button")[i]?.focus();
     };
-    return make("button", { type: "button", ariaPressed: String(i === this.chosen), onclick }, title);
+    return make("button", { type: "button", ariaPressed: String(i === this.chosen), onclick }, t(title));
   }
 }

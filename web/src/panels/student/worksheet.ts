@@ -1,5 +1,6 @@
 import { make } from "../../dom/elements";
 import type { Lesson, LessonStep, Question } from "../../gen/phrenic/v1/lesson_pb";
+import { t } from "../../language/translate";
 
 /** What a worksheet shows beside the words of its lesson. */
 export interface WorksheetParts {
@@ -28,8 +29,11 @@ export function answerSheet(lesson: Lesson): HTMLElement {
   const answers = lesson.steps.flatMap(({ title, question }, i) =>
     question === undefined ? [] : [make("section", {}, make("h2", {}, `${i + 1}. ${title}`), ...answerOf(question))],
   );
-  const none = make("p", {}, "This lesson has no questions.");
-  const head = [make("h1", {}, `Answers: ${lesson.title}`), make("p", { className: "summary" }, "For the teacher.")];
+  const none = make("p", {}, t("This lesson has no questions."));
+  const head = [
+    make("h1", {}, t("Answers: {0}", lesson.title)),
+    make("p", { className: "summary" }, t("For the teacher.")),
+  ];
   return make("article", { className: "sheet" }, ...head, ...(answers.length > 0 ? answers : [none]), disclaimer());
 }
 
@@ -37,7 +41,7 @@ function stepSection(step: LessonStep, number: number, { pictures, predicts }: W
   const picture = pictures.get(number);
   const changes = step.preset !== "" || step.parameters !== undefined;
   const drawings = [
-    ...(picture === undefined ? [] : [make("img", { src: picture, alt: `The view of step ${number}` })]),
+    ...(picture === undefined ? [] : [make("img", { src: picture, alt: t("The view of step {0}", number) })]),
     ...(predicts && changes ? [predictionAxes()] : []),
   ];
   return make(
@@ -46,7 +50,7 @@ function stepSection(step: LessonStep, number: number, { pictures, predicts }: W
     make("h2", {}, `${number}. ${step.title}`),
     make("p", {}, step.caption),
     ...(drawings.length === 0 ? [] : [make("div", { className: "drawings" }, ...drawings)]),
-    ...(step.task === "" ? [] : [make("p", {}, make("b", {}, "Try: "), step.task)]),
+    ...(step.task === "" ? [] : [make("p", {}, make("b", {}, t("Try: ")), step.task)]),
     ...(step.question === undefined ? ruled("What I saw:", 2) : questionRoom(step.question)),
   );
 }
@@ -55,7 +59,7 @@ function questionRoom(question: Question): HTMLElement[] {
   const words = make("p", { className: "asked" }, question.words);
   if (question.number !== undefined) {
     const blank = make("span", { className: "blank" });
-    return [words, make("p", {}, "Answer: ", blank, ` ${question.number.unit}`), ...ruled("Because:", 1)];
+    return [words, make("p", {}, t("Answer: "), blank, ` ${question.number.unit}`), ...ruled("Because:", 1)];
   }
   const boxes = question.answers.map((answer) => make("li", {}, make("span", { className: "box" }), answer.words));
   return [words, make("ul", {}, ...boxes), ...ruled("Because:", 1)];
@@ -82,7 +86,7 @@ function predictionAxes(): HTMLElement {
   const svg = document.createElementNS(space, "svg");
   svg.setAttribute("viewBox", "22 0 260 156");
   svg.setAttribute("role", "img");
-  svg.setAttribute("aria-label", "Empty axes: air in the lungs over the time of one breath");
+  svg.setAttribute("aria-label", t("Empty axes: air in the lungs over the time of one breath"));
   const path = (d: string, name: string) => {
     const element = document.createElementNS(space, "path");
     element.setAttribute("d", d);
@@ -93,10 +97,14 @@ function predictionAxes(): HTMLElement {
   const rows = Array.from({ length: 5 }, (_, i) => `M30 ${10 + 28 * i}H270`);
   path([...columns, ...rows].join(""), "grid");
   path("M30 4V150H278M26 10L30 3L34 10M271 146L278 150L271 154", "axes");
-  const words = make("figcaption", {}, "Draw what you expect: air in the lungs (up) over one breath (to the right).");
+  const words = make(
+    "figcaption",
+    {},
+    t("Draw what you expect: air in the lungs (up) over one breath (to the right)."),
+  );
   return make("figure", {}, svg, words);
 }
 
 function disclaimer(): HTMLElement {
-  return make("p", { className: "small" }, "Phrenic. Research and teaching; not for clinical use.");
+  return make("p", { className: "small" }, t("Phrenic. Research and teaching; not for clinical use."));
 }

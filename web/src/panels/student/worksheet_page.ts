@@ -2,6 +2,7 @@ import { make } from "../../dom/elements";
 import { switchRow } from "../../dom/rows";
 import type { Lesson } from "../../gen/phrenic/v1/lesson_pb";
 import { answerSheet, worksheet, type WorksheetParts } from "./worksheet";
+import { t } from "../../language/translate";
 
 /** Who prints, and what happens afterwards. */
 export interface WorksheetUse {
@@ -16,7 +17,7 @@ export interface WorksheetUse {
  * Escape closes it.
  */
 export function openWorksheet(lesson: Lesson, parts: WorksheetParts, use: WorksheetUse): void {
-  const page = make("div", { id: "worksheet", ariaLabel: "Worksheet", ariaModal: "true" });
+  const page = make("div", { id: "worksheet", ariaLabel: t("Worksheet"), ariaModal: "true" });
   page.setAttribute("role", "dialog");
   const [title, hidden] = [document.title, [...document.body.children] as HTMLElement[]];
   const others = hidden.filter(({ inert }) => !inert);
@@ -40,11 +41,15 @@ export function openWorksheet(lesson: Lesson, parts: WorksheetParts, use: Worksh
 }
 
 function bar(answers: HTMLElement, { teaches, print }: WorksheetUse, close: () => void): HTMLElement {
-  const go = make("button", { type: "button", id: "worksheet-print", className: "primary", onclick: print }, "Print");
-  const end = make("button", { type: "button", id: "worksheet-close", onclick: close }, "Close");
-  const help = "The right answers on a page of their own";
-  const { row } = switchRow("Answers for the teacher", help, (on) => (answers.hidden = !on));
+  const go = make(
+    "button",
+    { type: "button", id: "worksheet-print", className: "primary", onclick: print },
+    t("Print"),
+  );
+  const end = make("button", { type: "button", id: "worksheet-close", onclick: close }, t("Close"));
+  const help = t("The right answers on a page of their own");
+  const { row } = switchRow(t("Answers for the teacher"), help, (on) => (answers.hidden = !on));
   row.id = "worksheet-answers";
-  const note = make("p", {}, "The steps that you have played have pictures.");
+  const note = make("p", {}, t("The steps that you have played have pictures."));
   return make("div", { className: "worksheet-bar" }, go, end, ...(teaches ? [row] : []), note);
 }

@@ -11,6 +11,7 @@ import type { OverlayKind } from "../../viewer/overlays";
 import { cutRows } from "./cut_rows";
 import { projectorRow } from "./projector_row";
 import { type QualityChoice, qualityRow } from "./quality_row";
+import { t } from "../../language/translate";
 
 /** The settings that the panel changes. */
 export interface AppearanceSettings {
@@ -44,15 +45,17 @@ const ghosts: [GhostKind, string][] = [
 
 /** A panel for colours, transparency, clipping, ghost, overlays and labels. */
 export function appearancePanel(view: AppearanceSettings): HTMLElement {
-  const ghost = choice("ghost", "Ghost", "Deformable bodies in another state", ghosts, (kind) => view.ghost.set(kind));
+  const ghost = choice("ghost", t("Ghost"), t("Deformable bodies in another state"), ghosts, (kind) =>
+    view.ghost.set(kind),
+  );
   view.ghost.subscribe((kind) => (ghost.querySelector("select")!.value = kind));
-  const labels = switchRow("Show names", "Names of the visible structures (N).", (on) => view.labels.set(on));
+  const labels = switchRow(t("Show names"), t("Names of the visible structures (N)."), (on) => view.labels.set(on));
   view.labels.subscribe((on) => (labels.input.checked = on));
   labels.input.id = "show-labels";
-  const rows = overlayRows.map(([kind, label, help]) => overlayRow(kind, label, help, view.overlays));
+  const rows = overlayRows.map(([kind, label, help]) => overlayRow(kind, t(label), t(help), view.overlays));
   const cut = cutRows(view.cut, view.cutAt);
   return section(
-    "View",
+    t("View"),
     true,
     coloringRow(view.coloring, view.forceKinds, view.hasLungs),
     transparencyRow(view.layerStyles),
@@ -70,20 +73,20 @@ function coloringRow(coloring: Coloring, kinds: Signal<string[]>, hasLungs: Sign
     ["own", "Layer colours"],
     ...fields.map(({ kind, label }): [FieldKind, string] => [kind, label]),
   ];
-  const help = "Field that colours the deformable bodies, or the lungs";
-  const row = choice("coloring-kind", "Colour by", help, options, (kind) =>
+  const help = t("Field that colours the deformable bodies, or the lungs");
+  const row = choice("coloring-kind", t("Colour by"), help, options, (kind) =>
     coloring.choose(kind === "own" ? undefined : kind),
   );
   coloring.field.subscribe((kind) => (row.querySelector("select")!.value = kind ?? "own"));
-  const lungs = make("optgroup", { label: "Lung tissue" });
-  lungs.append(...tissueFields.map(({ kind, label }) => make("option", { value: kind }, label)));
+  const lungs = make("optgroup", { label: t("Lung tissue") });
+  lungs.append(...tissueFields.map(({ kind, label }) => make("option", { value: kind }, t(label))));
   row.querySelector("select")?.append(lungs);
   hasLungs.subscribe((has) => (lungs.hidden = !has));
   // The available kinds of force are known later, and change when a vertex is pulled.
-  const group = make("optgroup", { label: "Force" });
+  const group = make("optgroup", { label: t("Force") });
   row.querySelector("select")?.append(group);
   kinds.subscribe((all) => {
-    const wanted = all.map((kind) => make("option", { value: `force:${kind}` }, upper(forceKindLabel(kind))));
+    const wanted = all.map((kind) => make("option", { value: `force:${kind}` }, upper(t(forceKindLabel(kind)))));
     group.hidden = all.length === 0;
     group.replaceChildren(...wanted);
     row.querySelector("select")!.value = coloring.field.value ?? "own";
@@ -101,7 +104,7 @@ function choice<T extends string>(
   chosen: (value: T) => void,
 ): HTMLElement {
   const list = make("select", { id, title });
-  list.append(...options.map(([value, words]) => make("option", { value }, words)));
+  list.append(...options.map(([value, words]) => make("option", { value }, t(words))));
   list.onchange = () => chosen(list.value as T);
   return labelledRow(id, label, list);
 }
@@ -131,6 +134,6 @@ function transparencyRow(layerStyles: LayerStyles): HTMLElement {
     slider.style.setProperty("--filled", `${percent}%`);
     output.textContent = `${percent} %`;
   });
-  const label = make("label", { htmlFor: "transparency" }, "Transparency");
+  const label = make("label", { htmlFor: "transparency" }, t("Transparency"));
   return make("div", { className: "number-row plain" }, label, output, slider);
 }

@@ -2,6 +2,7 @@ import { make } from "../../dom/elements";
 import { labelledRow, switchRow } from "../../dom/rows";
 import type { Signal } from "../../state/signal";
 import type { Cut, CutKind } from "../../viewer/clipping";
+import { t } from "../../language/translate";
 
 const kinds: [CutKind, string][] = [
   ["none", "No cut"],
@@ -12,15 +13,15 @@ const kinds: [CutKind, string][] = [
 
 /** Rows for a clipping plane: orientation, position and side. `cutAt` returns its position [m]. */
 export function cutRows(cut: Signal<Cut>, cutAt: (cut: Cut) => number): HTMLElement[] {
-  const list = make("select", { id: "cut", title: "Clip one side of a plane" });
-  list.append(...kinds.map(([value, label]) => make("option", { value }, label)));
+  const list = make("select", { id: "cut", title: t("Clip one side of a plane") });
+  list.append(...kinds.map(([value, label]) => make("option", { value }, t(label))));
   list.onchange = () => cut.set({ ...cut.value, kind: list.value as CutKind });
   const slider = make("input", { type: "range", id: "cut-position", min: "0", max: "1", step: "0.005" });
   slider.oninput = () => cut.set({ ...cut.value, fraction: slider.valueAsNumber });
   const output = make("output", { className: "unit" });
-  const flip = switchRow("Keep the other side", "", (flipped) => cut.set({ ...cut.value, flipped }));
+  const flip = switchRow(t("Keep the other side"), "", (flipped) => cut.set({ ...cut.value, flipped }));
   flip.input.id = "cut-flip";
-  const label = make("label", { htmlFor: "cut-position" }, "Position of the cut");
+  const label = make("label", { htmlFor: "cut-position" }, t("Position of the cut"));
   const position = make("div", { className: "number-row plain" }, label, output, slider);
   cut.subscribe((value) => {
     position.hidden = flip.row.hidden = value.kind === "none";
@@ -31,6 +32,6 @@ export function cutRows(cut: Signal<Cut>, cutAt: (cut: Cut) => number): HTMLElem
     output.textContent = `${Math.round(1000 * cutAt(value))} mm`;
     slider.setAttribute("aria-valuetext", output.textContent);
   });
-  const row = labelledRow("cut", "Cut", list);
+  const row = labelledRow("cut", t("Cut"), list);
   return [row, position, flip.row];
 }

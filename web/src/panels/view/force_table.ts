@@ -1,14 +1,15 @@
 import { make } from "../../dom/elements";
 import { forceKindLabel, type VertexForce } from "../../session/force_queries";
 import type { Signal } from "../../state/signal";
+import { t } from "../../language/translate";
 
 /** A table of the forces on a vertex by kind, with the net force last; hidden if they are unknown. */
 export function forceTable(forces: Signal<VertexForce[]>): HTMLElement {
   const unit = make("th", { scope: "col" });
-  const heads = ["Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, text));
+  const heads = ["Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, t(text)));
   const rows = make("tbody");
   const head = make("thead", {}, make("tr", {}, unit, ...heads));
-  const table = make("table", { className: "figures", id: "forces", ariaLabel: "Forces on the vertex" }, head, rows);
+  const table = make("table", { className: "figures", id: "forces", ariaLabel: t("Forces on the vertex") }, head, rows);
   forces.subscribe((all) => {
     table.hidden = all.length === 0;
     const { name, factor } = forceUnit(all);

@@ -1,6 +1,7 @@
 import type { LayerStyle, LayerStyles } from "../../appearance/layer_styles";
 import { make } from "../../dom/elements";
 import { section } from "../../dom/rows";
+import { t } from "../../language/translate";
 
 /** A panel for visibility and opacity of each layer. */
 export function layersPanel(layerStyles: LayerStyles): HTMLElement {
@@ -11,14 +12,21 @@ export function layersPanel(layerStyles: LayerStyles): HTMLElement {
     if (names !== shown) list.replaceChildren(...all.map((look) => layerRow(look, layerStyles)));
     shown = names;
   });
-  return section("Layers", true, list);
+  return section(t("Layers"), true, list);
 }
 
-function layerRow({ layer, title, color }: LayerStyle, layerStyles: LayerStyles): HTMLElement {
+function layerRow({ layer, title: english, color }: LayerStyle, layerStyles: LayerStyles): HTMLElement {
+  const title = t(english);
   const swatch = make("span", { className: "swatch" });
   swatch.style.backgroundColor = color;
-  const visible = make("input", { type: "checkbox", ariaLabel: `Show ${title}` });
-  const opacity = make("input", { type: "range", min: "5", max: "100", step: "1", ariaLabel: `Opacity of ${title}` });
+  const visible = make("input", { type: "checkbox", ariaLabel: t("Show {0}", title) });
+  const opacity = make("input", {
+    type: "range",
+    min: "5",
+    max: "100",
+    step: "1",
+    ariaLabel: t("Opacity of {0}", title),
+  });
   visible.onchange = () => layerStyles.change(layer, { visible: visible.checked });
   opacity.oninput = () => layerStyles.change(layer, { opacity: opacity.valueAsNumber / 100, visible: true });
   layerStyles.all.subscribe(() => {

@@ -1,5 +1,6 @@
 import type { ColorScale } from "../../appearance/color_scale";
 import { make } from "../../dom/elements";
+import { decimal, t } from "../../language/translate";
 
 /** The colours of a scale with its ticks. */
 export class Legend {
@@ -14,12 +15,12 @@ export class Legend {
 
   /** Shows a scale. */
   show(scale: ColorScale): void {
-    this.bar.ariaLabel = `Colours from ${scale.low} to ${scale.top} ${scale.unit}`;
+    this.bar.ariaLabel = t("Colours from {0} to {1} {2}", scale.low, scale.top, scale.unit);
     this.unit.textContent = scale.unit;
     this.draw(scale);
     this.ticks.replaceChildren(
       ...scale.ticks().map(({ fraction, text }) => {
-        const tick = make("span", {}, text);
+        const tick = make("span", {}, decimal(text));
         tick.style.left = `${100 * fraction}%`;
         return tick;
       }),

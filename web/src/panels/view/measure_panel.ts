@@ -9,6 +9,7 @@ import { button, make } from "../../dom/elements";
 import { section } from "../../dom/rows";
 import type { FrameArrays } from "../../geometry/bodies";
 import { curveColor } from "../../graphs/colors";
+import { t } from "../../language/translate";
 
 const tools: [MeasureTool, string, string][] = [
   ["distance", "Distance", "Between two points on surfaces (M)"],
@@ -26,18 +27,18 @@ export class MeasurePanel {
   private readonly clear: HTMLButtonElement;
 
   constructor(private readonly measurements: Measurements) {
-    const bar = make("div", { className: "measure-tools", role: "group", ariaLabel: "Measure" }, ...this.buttons());
-    this.clear = button("Remove all measurements (Escape)", () => measurements.clear(), "Remove all");
+    const bar = make("div", { className: "measure-tools", role: "group", ariaLabel: t("Measure") }, ...this.buttons());
+    this.clear = button(t("Remove all measurements (Escape)"), () => measurements.clear(), t("Remove all"));
     this.clear.id = "measure-clear";
-    const table = make("table", { className: "probes measured", ariaLabel: "Measurements" }, this.rows);
-    this.element = section("Measure", true, bar, table, this.clear);
+    const table = make("table", { className: "probes measured", ariaLabel: t("Measurements") }, this.rows);
+    this.element = section(t("Measure"), true, bar, table, this.clear);
     this.element.id = "measure";
     measurements.all.subscribe((all) => {
       this.rows.replaceChildren(...all.map((each) => this.row(each)));
       this.clear.hidden = table.hidden = all.length === 0;
     });
-    const keys = make("p", {}, "or move the cross with the arrow keys and press Enter");
-    const end = button("End measuring (Escape)", () => measurements.use(undefined), "End");
+    const keys = make("p", {}, t("or move the cross with the arrow keys and press Enter"));
+    const end = button(t("End measuring (Escape)"), () => measurements.use(undefined), t("End"));
     this.hint.append(make("div", {}, this.next, keys), end);
     const sayNext = () => this.sayNext();
     measurements.tool.subscribe(sayNext);
@@ -58,7 +59,11 @@ export class MeasurePanel {
     const { measurements } = this;
     return tools.map(([tool, label, title]) => {
       const toggle = () => measurements.use(measurements.tool.value === tool ? undefined : tool);
-      const element = make("button", { type: "button", id: `measure-${tool}`, title, onclick: toggle }, label);
+      const element = make(
+        "button",
+        { type: "button", id: `measure-${tool}`, title: t(title), onclick: toggle },
+        t(label),
+      );
       measurements.tool.subscribe((active) => (element.ariaPressed = String(active === tool)));
       return element;
     });
@@ -67,7 +72,7 @@ export class MeasurePanel {
   private row({ id, name }: Measurement): HTMLTableRowElement {
     const swatch = make("span", { className: "swatch" });
     swatch.style.backgroundColor = curveColor(id);
-    const remove = button(`Remove the measurement of ${name}`, () => this.measurements.remove(id), "×");
+    const remove = button(t("Remove the measurement of {0}", name), () => this.measurements.remove(id), "×");
     remove.className = "quiet";
     const head = make("th", { scope: "row" }, swatch, name);
     return make("tr", {}, head, make("td", { className: "reading" }), make("td", {}, remove));
@@ -78,9 +83,9 @@ export class MeasurePanel {
     this.hint.hidden = tool.value === undefined;
     if (tool.value === undefined) return;
     const count = pointsOf[tool.value];
-    const next = tool.value === "surface" ? "a structure" : `point ${picked.value.length + 1} of ${count}`;
+    const next = tool.value === "surface" ? t("a structure") : t("point {0} of {1}", picked.value.length + 1, count);
     const [, label] = tools.find(([each]) => each === tool.value)!;
-    this.next.textContent = `${label}: click ${next}`;
+    this.next.textContent = t("{0}: click {1}", label, next);
   }
 }
 

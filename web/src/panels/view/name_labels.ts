@@ -2,13 +2,18 @@ import { make } from "../../dom/elements";
 import { oneTabStop } from "../../dom/toolbar";
 import type { VertexRef } from "../../geometry/vertices";
 import type { NameLabel } from "../../viewer/names";
+import { t } from "../../language/translate";
 
 /** Mean width of a character of a name [CSS pixels]. */
 const letterWidth = 6.8;
 
 /** The names beside the scene; those of structures are buttons among which the arrow keys move. */
 export class NameLabels {
-  readonly element = make("div", { className: "name-labels", ariaLabel: "Names of visible structures", hidden: true });
+  readonly element = make("div", {
+    className: "name-labels",
+    ariaLabel: t("Names of visible structures"),
+    hidden: true,
+  });
   /** Text of the name that had the focus before the names were hidden. */
   private kept: string | undefined;
   private readonly changed = oneTabStop(this.element);

@@ -1,6 +1,7 @@
 import { make } from "../../dom/elements";
 import type { ViewOrientation } from "../../viewer/camera_rig";
 import type { ViewName } from "../../viewer/named_views";
+import { t } from "../../language/translate";
 
 type Triple = [number, number, number];
 
@@ -18,14 +19,14 @@ const half = 18;
 
 /** A cube that shows the patient's orientation with radiological letters; each side selects its view. */
 export class OrientationCube {
-  readonly element = make("div", { id: "cube", role: "group", ariaLabel: "Sides" });
+  readonly element = make("div", { id: "cube", role: "group", ariaLabel: t("Sides") });
   private readonly cube = make("div", { className: "cube" });
   private shown = "";
 
   constructor(go: (view: ViewName) => void) {
     this.element.append(this.cube);
     for (const [letter, name, view, face, up] of sides) {
-      const label = `Look from ${name}`;
+      const label = t("Look from {0}", t(name));
       const side = make("button", { type: "button", title: label, ariaLabel: label, onclick: () => go(view) }, letter);
       const right = cross(up, face);
       const away = face.map((part) => half * part);

@@ -6,25 +6,26 @@ import { curveColor } from "../../graphs/colors";
 import type { VertexForce } from "../../session/force_queries";
 import type { Signal } from "../../state/signal";
 import { forceTable } from "./force_table";
+import { fixed, t } from "../../language/translate";
 
 /** A card with position, displacement and forces of the picked vertex, and the list of tracked vertices. */
 export class PickCard {
-  readonly element = make("section", { id: "picked", className: "card", hidden: true, ariaLabel: "Picked vertex" });
+  readonly element = make("section", { id: "picked", className: "card", hidden: true, ariaLabel: t("Picked vertex") });
   private readonly title = make("h2");
   private readonly rows = make("tbody");
   private readonly trackedList = make("div", { className: "tracked" });
-  private readonly trackButton = make("button", { type: "button", id: "track" }, "Track");
+  private readonly trackButton = make("button", { type: "button", id: "track" }, t("Track"));
 
   constructor(
     private readonly trackedVertices: TrackedVertices,
     forces: Signal<VertexForce[]>,
   ) {
-    const close = make("button", { type: "button", onclick: () => trackedVertices.picked.set(undefined) }, "Close");
-    this.trackButton.title = "Mark the vertex and plot its displacement";
+    const close = make("button", { type: "button", onclick: () => trackedVertices.picked.set(undefined) }, t("Close"));
+    this.trackButton.title = t("Mark the vertex and plot its displacement");
     this.trackButton.onclick = () => {
       if (trackedVertices.picked.value !== undefined) trackedVertices.track(trackedVertices.picked.value);
     };
-    const heads = ["mm", "Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, text));
+    const heads = ["mm", "Left", "Back", "Up"].map((text) => make("th", { scope: "col" }, t(text)));
     const table = make("table", { className: "figures" }, make("thead", {}, make("tr", {}, ...heads)), this.rows);
     const buttons = make("div", { className: "row" }, this.trackButton, close);
     const own = make("div", { className: "result" }, this.title, table, forceTable(forces), buttons);
@@ -32,7 +33,7 @@ export class PickCard {
     trackedVertices.picked.subscribe((ref) => {
       own.hidden = ref === undefined;
       if (ref !== undefined)
-        this.title.replaceChildren("Vertex ", make("b", {}, String(ref.vertex)), ` of ${ref.body}`);
+        this.title.replaceChildren(t("Vertex "), make("b", {}, String(ref.vertex)), t(" of {0}", ref.body));
       this.updateVisibility();
     });
     trackedVertices.tracked.subscribe((refs) => {
@@ -56,7 +57,11 @@ export class PickCard {
     const swatch = make("span", { className: "swatch" });
     swatch.style.backgroundColor = curveColor(order);
     const name = vertexLabel(ref);
-    const leave = make("button", { type: "button", className: "small", ariaLabel: `Stop tracking ${name}` }, "Stop");
+    const leave = make(
+      "button",
+      { type: "button", className: "small", ariaLabel: t("Stop tracking {0}", name) },
+      t("Stop"),
+    );
     leave.onclick = () => this.trackedVertices.untrack(ref);
     return make("div", { className: "key" }, swatch, make("span", {}, name), leave);
   }
@@ -70,10 +75,10 @@ export class PickCard {
 }
 
 function rowsOf({ position, displacement }: VertexState): string[][] {
-  const words = (metres: number[]) => metres.map((each) => (1000 * each).toFixed(1).replace("-", "−"));
+  const words = (metres: number[]) => metres.map((each) => fixed(1000 * each, 1).replace("-", "−"));
   return [
-    ["Position", ...words(position)],
-    ["Displacement", ...words(displacement)],
+    [t("Position"), ...words(position)],
+    [t("Displacement"), ...words(displacement)],
   ];
 }
 

@@ -1,4 +1,5 @@
 import { switchRow } from "../../dom/rows";
+import { t } from "../../language/translate";
 
 const key = "phrenic-projector";
 
@@ -8,7 +9,7 @@ export function projectorRow(memory: Pick<Storage, "getItem" | "setItem"> = loca
     document.documentElement.classList.toggle("projector", on);
     memory.setItem(key, on ? "on" : "off");
   };
-  const { row, input } = switchRow("Projector mode", "Large type and strong contrast.", turn);
+  const { row, input } = switchRow(t("Projector mode"), t("Large type and strong contrast."), turn);
   input.id = "projector";
   input.checked = memory.getItem(key) === "on";
   turn(input.checked);

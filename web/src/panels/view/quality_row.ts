@@ -2,6 +2,7 @@ import { make } from "../../dom/elements";
 import { labelledRow } from "../../dom/rows";
 import { Signal } from "../../state/signal";
 import { type Quality, qualities } from "../../viewer/quality";
+import { t } from "../../language/translate";
 
 /** What a picture may cost; undefined to choose by the measured time of a drawing. */
 export type QualityChoice = Quality | undefined;
@@ -23,9 +24,9 @@ export function rememberedQuality(memory: Pick<Storage, "getItem" | "setItem"> =
 
 /** A row that chooses the quality of the picture. */
 export function qualityRow(quality: Signal<QualityChoice>): HTMLElement {
-  const list = make("select", { id: "quality", title: "Lights and shadows: a slow machine draws plainer pictures" });
-  list.append(...labels.map(([value, label]) => make("option", { value: value ?? "automatic" }, label)));
+  const list = make("select", { id: "quality", title: t("Lights and shadows: a slow machine draws plainer pictures") });
+  list.append(...labels.map(([value, label]) => make("option", { value: value ?? "automatic" }, t(label))));
   list.onchange = () => quality.set(qualities.find((each) => each === list.value));
   quality.subscribe((chosen) => (list.value = chosen ?? "automatic"));
-  return labelledRow("quality", "Picture", list);
+  return labelledRow("quality", t("Picture"), list);
 }

@@ -1,6 +1,7 @@
 import type { Structure } from "../../anatomy/structures";
 import { make } from "../../dom/elements";
 import type { Signal } from "../../state/signal";
+import { t } from "../../language/translate";
 
 /** What the card does with the chosen structure. */
 export interface StructureActions {
@@ -22,15 +23,15 @@ export function structureCard(
   const latin = make("p", { className: "latin", lang: "la" });
   const definition = make("p");
   const alone = make("button", { type: "button", id: "structure-alone" });
-  const close = make("button", { type: "button", onclick: () => chosen.set(undefined) }, "Close");
+  const close = make("button", { type: "button", onclick: () => chosen.set(undefined) }, t("Close"));
   const size = make(
     "button",
-    { type: "button", id: "structure-measure", title: "Area, and volume if closed" },
-    "Measure",
+    { type: "button", id: "structure-measure", title: t("Area, and volume if closed") },
+    t("Measure"),
   );
   size.onclick = () => chosen.value && measure?.(chosen.value);
   const buttons = measure === undefined ? [alone, close] : [alone, size, close];
-  const card = make("section", { id: "structure", className: "card", ariaLabel: "Structure" });
+  const card = make("section", { id: "structure", className: "card", ariaLabel: t("Structure") });
   alone.onclick = () => {
     if (isolated.value !== undefined) showAll();
     else if (chosen.value !== undefined) isolate(chosen.value);
@@ -43,8 +44,9 @@ export function structureCard(
     definition.textContent = structure?.definition ?? "";
   });
   isolated.subscribe((structure) => {
-    alone.textContent = structure === undefined ? "Show alone" : "Show all";
-    alone.title = structure === undefined ? "Fly to it and fade all others" : "Show all structures again (Escape)";
+    alone.textContent = structure === undefined ? t("Show alone") : t("Show all");
+    alone.title =
+      structure === undefined ? t("Fly to it and fade all others") : t("Show all structures again (Escape)");
   });
   return card;
 }

@@ -1,5 +1,6 @@
 import type { Structure } from "../../anatomy/structures";
 import { make } from "../../dom/elements";
+import { t } from "../../language/translate";
 
 /** What the search field searches, and what it does with a result. */
 export interface StructureSearch {
@@ -11,14 +12,14 @@ export interface StructureSearch {
 
 /** A field that finds a structure by a part of its English or Latin name; the arrow keys go through the results. */
 export function structureSearch({ search, choose, leave }: StructureSearch): HTMLElement {
-  const list = make("ul", { id: "find-results", role: "listbox", ariaLabel: "Structures", hidden: true });
+  const list = make("ul", { id: "find-results", role: "listbox", ariaLabel: t("Structures"), hidden: true });
   const field = make("input", {
     type: "search",
     id: "find-structure",
     role: "combobox",
-    placeholder: "Find a structure",
-    ariaLabel: "Find a structure",
-    title: "Name it in English or Latin (/)",
+    placeholder: t("Find a structure"),
+    ariaLabel: t("Find a structure"),
+    title: t("Name it in English or Latin (/)"),
     ariaExpanded: "false",
     ariaAutoComplete: "list",
     autocomplete: "off",

@@ -1,6 +1,7 @@
 import { button, make } from "../../dom/elements";
 import { icon } from "../../dom/icons";
 import type { FrameBuffer } from "../../frames/frame_buffer";
+import { fixed, t } from "../../language/translate";
 
 /** Shortest recording that can be replayed [s]. */
 const minSpan = 0.5;
@@ -8,7 +9,7 @@ const minSpan = 0.5;
 /** A slider over the last seconds that replays earlier frames while the simulation continues. */
 export class Timeline {
   readonly element = make("div", { id: "timeline" });
-  private readonly slider = make("input", { type: "range", id: "replay", step: "any", ariaLabel: "Replay" });
+  private readonly slider = make("input", { type: "range", id: "replay", step: "any", ariaLabel: t("Replay") });
   private readonly words = make("output");
   private readonly live: HTMLButtonElement;
 
@@ -16,9 +17,9 @@ export class Timeline {
     private readonly frames: FrameBuffer,
     private readonly onReplay: (time: number | undefined) => void,
   ) {
-    this.slider.title = "Replay the last seconds";
+    this.slider.title = t("Replay the last seconds");
     this.slider.oninput = () => this.replayAt(this.slider.valueAsNumber);
-    this.live = button("Back to live", () => this.replayAt(Infinity), icon("play"));
+    this.live = button(t("Back to live"), () => this.replayAt(Infinity), icon("play"));
     this.live.id = "replay-live";
     this.live.className = "quiet";
     this.element.append(this.slider, this.words, this.live);
@@ -45,7 +46,7 @@ export class Timeline {
     const ago = replayedFrame === undefined ? 0 : span.end - replayedFrame.time;
     if (document.activeElement !== this.slider || replayedFrame === undefined)
       this.slider.value = String(span.end - ago);
-    const words = replayedFrame === undefined ? "live" : `${ago.toFixed(2)} s ago`;
+    const words = replayedFrame === undefined ? t("live") : t("{0} s ago", fixed(ago, 2));
     if (this.words.textContent !== words) this.words.textContent = words;
     this.slider.setAttribute("aria-valuetext", words);
     const part = span.end > span.start ? 1 - ago / (span.end - span.start) : 1;

@@ -2,6 +2,7 @@ import { make } from "../../dom/elements";
 import type { Signal } from "../../state/signal";
 import type { Viewpoint } from "../../viewer/viewpoints";
 import type { Viewer } from "../../viewer/viewer";
+import { t } from "../../language/translate";
 
 const buttons: [name: string, label: string][] = [
   ["home", "Home"],
@@ -27,7 +28,7 @@ export function viewBar(
     event.preventDefault();
   });
   const row = buttons.map(([name, label]) => {
-    const element = make("button", { type: "button", onclick: () => visit(name) }, label);
+    const element = make("button", { type: "button", onclick: () => visit(name) }, t(label));
     element.dataset.view = name;
     return element;
   });
@@ -36,14 +37,14 @@ export function viewBar(
 
 /** A list of all views, with the key of each. */
 function viewList(viewpoints: Signal<Viewpoint[]>, visit: Visit): HTMLElement {
-  const list = make("select", { id: "viewpoints", ariaLabel: "Views", title: "Views and cuts by name" });
+  const list = make("select", { id: "viewpoints", ariaLabel: t("Views"), title: t("Views and cuts by name") });
   list.onchange = () => {
     visit(list.value);
     list.value = "";
   };
   viewpoints.subscribe((all) => {
-    const options = all.map(({ name, label, key }) => make("option", { value: name }, `${label} (${key})`));
-    list.replaceChildren(make("option", { value: "", hidden: true }, "Views"), ...options);
+    const options = all.map(({ name, label, key }) => make("option", { value: name }, `${t(label)} (${key})`));
+    list.replaceChildren(make("option", { value: "", hidden: true }, t("Views")), ...options);
     list.value = "";
   });
   return list;
