@@ -19,6 +19,7 @@
 #include "client/files/person_structures.h"
 #include "client/files/scene_lungs.h"
 #include "client/files/whole_file.h"
+#include "client/fitting/simulated_fit.h"
 #include "client/print/joint_fit.h"
 #include "client/print/motion_fit.h"
 #include "client/print/output.h"
@@ -44,6 +45,7 @@ struct FitCommandOptions {
   MeasuredOptions data;
   std::optional<double> descent, tidal_volume;  // [mm], [l]
   fit::FitOptions fit;
+  SimulatedFitOptions simulated;
   bool show_landmarks = false;                     // in the scene
   std::string data_dir, residuals, expected, out;  // files; empty: none
   std::string source;
@@ -133,6 +135,7 @@ std::string JointUsageFault(const FitCommandOptions& options) {
 }
 
 std::string FitUsageFault(const FitCommandOptions& options) {
+  if (!options.simulated.parameters.empty()) return SimulatedUsageFault(options);
   if (HasOtherKinds(options.data)) return JointUsageFault(options);
   const bool number = options.descent || options.tidal_volume;
   if (options.data.landmarks.empty() == options.data.exhale.empty()) {
@@ -190,6 +193,45 @@ int WriteJoint(const FitCommandOptions& options, const fit::SceneLungs& lungs, c
   if (options.residuals.empty()) return kOk;
   if (const absl::Status status = WriteResiduals(options.residuals, found.motion); !status.ok()) return Fail(status);
   std::cerr << "wrote " << options.residuals << "\n";
+  return kOk;
+}
+
+std::string SimulatedUsageFault(const FitCommandOptions& options) {
+  if (options.descent || options.tidal_volume || options.fit.assimilate || options.show_landmarks ||
+      !options.expected.empty() || !options.residuals.empty()) {
+    return "--parameters fits a simulation: leave --descent, --tidal-volume, --assimilate, --show-landmarks, "
+           "--expected "
+           "and --residuals out";
+  }
+  const MeasuredOptions& data = options.data;
+  if (!data.landmarks.empty() || !data.surfaces.empty() || !data.lung_surfaces.empty() || !data.volumes.empty() ||
+      !data.m_modes.empty() || !data.markers.empty()) {
+    return "";
+  }
+  return "--parameters needs data: --volume, --m-mode, --markers, --landmarks, --surface or --lung-surface";
+}
+
+// Fits live parameters by simulated breaths.
+int FitParameters(const Context& context, const FitCommandOptions& options) {
+  const auto files = ReadMeasured(options.data);
+  if (!files.ok()) return Fail(files.status());
+  const auto evidence = fit::ParseEvidence(*files);
+  if (!evidence.ok()) return Fail(evidence.status());
+  const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
+  if (!scene.ok()) return Fail(scene.status());
+  absl::StatusOr<SimulatedFit> found = absl::UnknownError("");
+  {
+    Progress progress("fitting " + options.scene.scene, 1);
+    const fit::FitProgress show = ShowOn(progress, context);
+    found = FitSimulation(context, *scene, options.scene.scene, *evidence, options.simulated, options.fit,
+                          options.data_dir, [&](double done, const std::string& stage) { return show(done, stage); });
+  }
+  if (!found.ok()) return FailFit(context, found.status());
+  const std::string source = SourceOf(options, *files);
+  PrintSimulated(context, *found, source);
+  if (options.out.empty()) return kOk;
+  if (const absl::Status status = WriteSimulatedScene(options.out, *found, source); !status.ok()) return Fail(status);
+  std::cerr << "wrote " << options.out << "\n";
   return kOk;
 }
 
@@ -337,6 +379,7 @@ int FitPerson(const Context& context, const FitCommandOptions& options) {
     Fail(absl::InvalidArgumentError(fault));
     return kUsage;
   }
+  if (!options.simulated.parameters.empty()) return FitParameters(context, options);
   if (HasOtherKinds(options.data)) return FitAll(context, options);
   return options.data.landmarks.empty() ? FitOneNumber(context, options) : FitLandmarks(context, options);
 }
@@ -422,6 +465,16 @@ CommandFunction SetUpFit(CLI::App& command) {
       ->check(NumberIn(0, 150));
   command.add_option("--tidal-volume", options->tidal_volume, "change of the lungs' volume [l], with --exhale")
       ->check(NumberIn(0, 8));
+  command
+      .add_option("--parameters", options->simulated.parameters,
+                  "fit live parameters of the scene by simulated breaths, such as diaphragm_activation, "
+                  "intercostal_activation, lung_compliance:0.1:0.3")
+      ->delimiter(',')
+      ->check(ParsedBy([](const std::string& text) { return calibrate::ReadVaried(text).status(); }))
+      ->allow_extra_args(false);
+  command.add_option("--preset", options->simulated.preset, "the preset that --parameters begins with")
+      ->capture_default_str();
+  AddParameters(command, options->simulated.settings);
   command.add_option("--modes", options->fit.numbers, "numbers that a breath is made of")->capture_default_str();
   command.add_option("--split", options->fit.split, "seed of the random half that is fitted")
       ->check(NumberIn(0, 4294967295))

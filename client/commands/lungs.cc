@@ -18,6 +18,7 @@
 #include "server/imaging/gzip.h"
 #include "server/imaging/nifti_vectors.h"
 #include "server/mechanics/compile/presets.h"
+#include "server/mechanics/motions/lung_modes.h"
 #include "server/mesh/units.h"
 #include "server/physiology/lung_breath.h"
 #include "server/service/calls/status.h"
@@ -112,11 +113,37 @@ absl::Status WriteField(const std::vector<LungMotion>& motions, const LungsOptio
   return absl::OkStatus();
 }
 
+// The lungs of a person's scene, which boundary modes move: their breath is known without running it.
+absl::StatusOr<std::vector<LungsOfBreath>> ReadModes(const Model& model, const v1::Parameters& settings,
+                                                     const LungsOptions& options) {
+  if (options.glued) {
+    return absl::FailedPreconditionError("the motion of these lungs' walls is prescribed: --glued changes nothing");
+  }
+  std::vector<LungsOfBreath> breaths;
+  const auto presets = options.presets.empty() ? std::vector<std::string>{""} : options.presets;
+  for (const std::string& preset : presets) {
+    const auto parameters = LungParameters(model, preset, settings);
+    if (!parameters.ok()) return parameters.status();
+    const auto motions = physiology::MotionsOfModes(model, *parameters);
+    if (!motions.ok()) return motions.status();
+    LungsOfBreath breath = {preset, std::nan(""), physiology::ReadingsOf(*motions)};
+    const std::vector<LungModes::Inside>& insides = LungModes::Find(model)->insides();
+    for (size_t i = 0; i < breath.lungs.size(); ++i) {
+      breath.lungs[i].lung = model.bodies[static_cast<size_t>(insides[i].body)].name;
+    }
+    breaths.push_back(std::move(breath));
+    if (options.field.empty()) continue;
+    if (absl::Status status = WriteField(*motions, options); !status.ok()) return status;
+  }
+  return breaths;
+}
+
 absl::StatusOr<std::vector<LungsOfBreath>> ReadBreaths(const Context& context, const LungsOptions& options) {
   const absl::StatusOr<v1::Parameters> settings = ReadSettings(options.settings);
   if (!settings.ok()) return settings.status();
   const auto model = CompileLungs(context, options);
   if (!model.ok()) return model.status();
+  if (LungModes::Find(**model) != nullptr) return ReadModes(**model, *settings, options);
   const auto subject = physiology::Subject::Of(**model);
   if (!subject.ok()) return subject.status();
   LungElasticity elasticity = {.edge = options.edge_mm / kMillimetresAMetre};
@@ -162,8 +189,9 @@ void PrintLungs(const Context& context, const std::vector<LungsOfBreath>& breath
   for (const LungsOfBreath& breath : breaths) {
     double tissue = 0;
     for (const LungReading& lung : breath.lungs) tissue += lung.volume;
-    std::cout << absl::StrFormat("%s: the tissue gains %.0f ml, the lungs %.0f ml of air\n",
-                                 breath.preset.empty() ? "breath" : breath.preset, 1e6 * tissue, 1e6 * breath.air);
+    std::cout << absl::StrFormat("%s: the tissue gains %.0f ml", breath.preset.empty() ? "breath" : breath.preset,
+                                 1e6 * tissue);
+    std::cout << (std::isnan(breath.air) ? "\n" : absl::StrFormat(", the lungs %.0f ml of air\n", 1e6 * breath.air));
   }
 }
 
@@ -184,7 +212,8 @@ void PrintLungsJson(const std::vector<LungsOfBreath>& breaths) {
                        {"back_over_front", lung.back_over_front},
                        {"upwards", lung.upwards}});
     }
-    json.push_back({{"preset", breath.preset}, {"air_ml", 1e6 * breath.air}, {"lungs", lungs}});
+    json.push_back({{"preset", breath.preset}, {"lungs", lungs}});
+    if (!std::isnan(breath.air)) json.back()["air_ml"] = 1e6 * breath.air;
   }
   PrintJson(json);
 }

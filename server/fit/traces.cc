@@ -177,6 +177,7 @@ Troughs FindTroughs(const RawTrace& raw, const std::vector<double>& crossings) {
 Eigen::Index AddSamples(const RawTrace& raw, const std::vector<double>& crossings, const Troughs& troughs, double si,
                         TracedBreaths& breaths) {
   std::vector<double> phase, value;
+  std::vector<int> breath;
   size_t k = 0;
   for (size_t i = 0; i < raw.time.size(); ++i) {
     const double t = raw.time[i];
@@ -184,13 +185,16 @@ Eigen::Index AddSamples(const RawTrace& raw, const std::vector<double>& crossing
     while (t >= crossings[k + 1]) ++k;
     phase.push_back((t - crossings[k]) / (crossings[k + 1] - crossings[k]));
     value.push_back(si * (raw.value[i] - troughs.At(t)));
+    breath.push_back(static_cast<int>(k));
   }
   const auto count = static_cast<Eigen::Index>(phase.size()), used = std::min(count, kMostUsed);
   breaths.phase.resize(used);
   breaths.value.resize(used);
+  breaths.breath.resize(used);
   for (Eigen::Index i = 0; i < used; ++i) {
     breaths.phase[i] = phase[static_cast<size_t>(i * count / used)];
     breaths.value[i] = value[static_cast<size_t>(i * count / used)];
+    breaths.breath[i] = breath[static_cast<size_t>(i * count / used)];
   }
   return count;
 }
@@ -221,6 +225,23 @@ absl::Status CheckBreaths(Traced traced, std::string_view name, TracedBreaths& b
 }
 
 }  // namespace
+
+std::vector<int> SamplesOf(const TracedBreaths& breaths, bool held_out) {
+  constexpr int kParts = 16;  // of a single breath
+  const bool single = breaths.lengths.size() < 2;
+  std::vector<int> samples;
+  for (int i = 0; i < static_cast<int>(breaths.phase.size()); ++i) {
+    const int block = single ? static_cast<int>(kParts * breaths.phase[i]) : breaths.breath[i];
+    if ((block % 2 == 1) == held_out) samples.push_back(i);
+  }
+  return samples;
+}
+
+std::vector<int> BreathsOf(const TracedBreaths& breaths, bool held_out) {
+  std::vector<int> of;
+  for (int k = held_out ? 1 : 0; k < static_cast<int>(breaths.lengths.size()); k += 2) of.push_back(k);
+  return of;
+}
 
 absl::StatusOr<TracedBreaths> ParseTrace(Traced traced, std::string_view name, std::string_view bytes) {
   const absl::StatusOr<RawTrace> raw = ReadRaw(traced, name, bytes);

@@ -33,6 +33,7 @@ from .runs import Run, batch
 from .server import LocalServer, Server, connect, default_server, local
 from .session import Session, Studies
 from .table import Table
+from .tissue import Tissue
 
 __version__ = "0.1.0"
 __all__ = [
@@ -52,6 +53,7 @@ __all__ = [
     "Studies",
     "Study",
     "Table",
+    "Tissue",
     "Tls",
     "aio",
     "batch",
