@@ -53,14 +53,13 @@ struct FitCommandOptions {
 
 int FailFit(const Context& context, const absl::Status& status) { return Fail(context, service::ToGrpc(status)); }
 
-// Writes the registered lungs as surfaces.
-absl::Status WriteLungs(const std::string& folder, const fit::LungTemplates& templates,
-                        const fit::RegisteredLungs& registered) {
+// Writes lungs as surfaces.
+absl::Status WriteLungs(const std::string& folder, const std::array<Mesh, 2>& lungs) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   for (const fit::Side side : {fit::kRight, fit::kLeft}) {
     const std::string file = absl::StrCat(folder, side == fit::kLeft ? "/lung-left.obj" : "/lung-right.obj");
-    const auto bytes = meshio::Write(file, registered.lungs[side].Apply(templates[side].surface()), 0.001);
+    const auto bytes = meshio::Write(file, lungs[side], 0.001);
     if (!bytes.ok()) return bytes.status();
     if (absl::Status status = WriteWhole(file, *bytes); !status.ok()) return status;
     std::cerr << "wrote " << file << "\n";
@@ -105,7 +104,19 @@ int RegisterPerson(const Context& context, const RegisterOptions& options) {
       WithProgress("registering", [&] { return fit::RegisterLungs(lungs->templates, input->points); });
   if (!registered.ok()) return FailFit(context, registered.status());
   PrintDoubts(*registered);
-  const auto residuals = fit::CompareStructures(lungs->templates, *registered, input->structures);
+  std::array<Mesh, 2> surfaces;
+  for (const fit::Side side : {fit::kRight, fit::kLeft}) {
+    surfaces[side] = registered->lungs[side].Apply(lungs->templates[side].surface());
+  }
+  StructureResiduals residuals;
+  if (!input->structures.empty()) {
+    const auto bent =
+        WithProgress("bending", [&] { return fit::BendLungs(lungs->templates, *registered, input->structures); });
+    if (!bent.ok()) return FailFit(context, bent.status());
+    surfaces = bent->surfaces;
+    residuals = {fit::CompareStructures(lungs->templates, *registered, input->structures),
+                 fit::CompareStructures(*bent, input->structures), bent->most};
+  }
   if (context.json()) {
     PrintJson(RegistrationJson(*registered, residuals));
   } else if (context.output == Output::kCsv) {
@@ -115,7 +126,7 @@ int RegisterPerson(const Context& context, const RegisterOptions& options) {
     PrintStructures(residuals);
   }
   if (options.out.empty()) return kOk;
-  const absl::Status written = WriteLungs(options.out, lungs->templates, *registered);
+  const absl::Status written = WriteLungs(options.out, surfaces);
   return written.ok() ? kOk : Fail(written);
 }
 
@@ -132,6 +143,21 @@ std::string JointUsageFault(const FitCommandOptions& options) {
     return "--show-landmarks belongs to --landmarks with --out";
   }
   return "";
+}
+
+std::string SimulatedUsageFault(const FitCommandOptions& options) {
+  if (options.descent || options.tidal_volume || options.fit.assimilate || options.show_landmarks ||
+      !options.expected.empty() || !options.residuals.empty()) {
+    return "--parameters fits a simulation: leave --descent, --tidal-volume, --assimilate, --show-landmarks, "
+           "--expected "
+           "and --residuals out";
+  }
+  const MeasuredOptions& data = options.data;
+  if (!data.landmarks.empty() || !data.surfaces.empty() || !data.lung_surfaces.empty() || !data.volumes.empty() ||
+      !data.m_modes.empty() || !data.markers.empty()) {
+    return "";
+  }
+  return "--parameters needs data: --volume, --m-mode, --markers, --landmarks, --surface or --lung-surface";
 }
 
 std::string FitUsageFault(const FitCommandOptions& options) {
@@ -194,21 +220,6 @@ int WriteJoint(const FitCommandOptions& options, const fit::SceneLungs& lungs, c
   if (const absl::Status status = WriteResiduals(options.residuals, found.motion); !status.ok()) return Fail(status);
   std::cerr << "wrote " << options.residuals << "\n";
   return kOk;
-}
-
-std::string SimulatedUsageFault(const FitCommandOptions& options) {
-  if (options.descent || options.tidal_volume || options.fit.assimilate || options.show_landmarks ||
-      !options.expected.empty() || !options.residuals.empty()) {
-    return "--parameters fits a simulation: leave --descent, --tidal-volume, --assimilate, --show-landmarks, "
-           "--expected "
-           "and --residuals out";
-  }
-  const MeasuredOptions& data = options.data;
-  if (!data.landmarks.empty() || !data.surfaces.empty() || !data.lung_surfaces.empty() || !data.volumes.empty() ||
-      !data.m_modes.empty() || !data.markers.empty()) {
-    return "";
-  }
-  return "--parameters needs data: --volume, --m-mode, --markers, --landmarks, --surface or --lung-surface";
 }
 
 // Fits live parameters by simulated breaths.

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <set>
+#include <string_view>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -19,6 +20,7 @@ using physiology::Recording;
 constexpr double kSwaySd = 0.005;                             // [m]
 constexpr double kLeastScale = 0.6, kMostScale = 1.6;         // of a chest over the scene's
 constexpr double kMostCageRms = 0.025, kLeastBreadth = 0.03;  // [m]
+constexpr double kAmbiguous = 0.03;                           // [m]
 constexpr int kMatches = 200;
 constexpr int kFewestToHoldOut = 8, kHeldOutStride = 4;
 
@@ -60,7 +62,17 @@ const Bone* BoneOf(const std::string& marker, const std::vector<Bone>& bones) {
 struct NamedMarkers {
   Points places;
   std::vector<const Bone*> bones;
+  std::vector<int> vertices;  // of the bones; -1: any
 };
+
+// Returns the vertex of a bone that is foremost, outermost or hindmost.
+int ExtremeOf(const Bone& bone, std::string_view which) {
+  Eigen::Index at = -1;
+  if (which.ends_with("front")) bone.points.row(1).minCoeff(&at);
+  if (which.ends_with("back")) bone.points.row(1).maxCoeff(&at);
+  if (which.ends_with("side")) bone.points.row(0).cwiseAbs().maxCoeff(&at);
+  return static_cast<int>(at);
+}
 
 NamedMarkers NamedOnes(const fit::Markers& markers, const std::vector<Bone>& bones) {
   NamedMarkers named;
@@ -70,6 +82,7 @@ NamedMarkers NamedOnes(const fit::Markers& markers, const std::vector<Bone>& bon
     if (bone == nullptr) continue;
     indices.push_back(static_cast<Eigen::Index>(i));
     named.bones.push_back(bone);
+    named.vertices.push_back(ExtremeOf(*bone, markers.names[i]));
   }
   named.places = markers.rest(Eigen::all, indices);
   return named;
@@ -92,7 +105,8 @@ Similarity MatchFrom(const NamedMarkers& named, const Points& first) {
     const double before = found.rms;
     for (Eigen::Index k = 0; k < there.cols(); ++k) {
       const Bone& bone = *named.bones[static_cast<size_t>(k)];
-      on_bones.col(k) = bone.points.col(bone.search.Nearest(there.col(k)).vertex);
+      const int known = named.vertices[static_cast<size_t>(k)];
+      on_bones.col(k) = bone.points.col(known >= 0 ? known : bone.search.Nearest(there.col(k)).vertex);
     }
     found.rms = std::sqrt((there - on_bones).colwise().squaredNorm().mean());
     if (std::abs(before - found.rms) < 1e-7) break;
@@ -100,24 +114,21 @@ Similarity MatchFrom(const NamedMarkers& named, const Points& first) {
   return found;
 }
 
-// Starts from the bones' middles, foremost, hindmost and outermost points, and returns the nearest match.
-Similarity NearestMatch(const NamedMarkers& named) {
-  Similarity best;
-  for (int start = 0; start < 4; ++start) {
+// Matches from the bones' middles, foremost, hindmost and outermost points; the nearest match first.
+std::vector<Similarity> Matches(const NamedMarkers& named) {
+  std::vector<Similarity> matches;
+  for (const char* start : {"", "front", "back", "side"}) {
     Points first(3, named.places.cols());
     for (Eigen::Index k = 0; k < first.cols(); ++k) {
-      const Points& points = named.bones[static_cast<size_t>(k)]->points;
-      Eigen::Index at = 0;
-      if (start == 1) points.row(1).minCoeff(&at);
-      if (start == 2) points.row(1).maxCoeff(&at);
-      if (start == 3) points.row(0).cwiseAbs().maxCoeff(&at);
-      first.col(k) = start == 0 ? Eigen::Vector3d(points.rowwise().mean()) : Eigen::Vector3d(points.col(at));
+      const Bone& bone = *named.bones[static_cast<size_t>(k)];
+      const int known = named.vertices[static_cast<size_t>(k)], at = known >= 0 ? known : ExtremeOf(bone, start);
+      first.col(k) = at < 0 ? Eigen::Vector3d(bone.points.rowwise().mean()) : Eigen::Vector3d(bone.points.col(at));
     }
-    const Similarity match = MatchFrom(named, first);
-    const double scale = std::cbrt(match.to_scene.linear().determinant());
-    if (match.rms < best.rms && scale > kLeastScale / 10) best = match;
+    matches.push_back(MatchFrom(named, first));
   }
-  return best;
+  std::stable_sort(matches.begin(), matches.end(),
+                   [](const Similarity& a, const Similarity& b) { return a.rms < b.rms; });
+  return matches;
 }
 
 absl::Status CheckNamed(const std::string& source, const NamedMarkers& named) {
@@ -138,10 +149,11 @@ absl::Status CheckNamed(const std::string& source, const NamedMarkers& named) {
       ": the named markers lie almost on a line, which does not tell how the chest is turned: name others too"));
 }
 
-absl::Status CheckMatch(const std::string& source, const NamedMarkers& named, const Similarity& match) {
+absl::Status CheckMatch(const std::string& source, const NamedMarkers& named, const std::vector<Similarity>& matches) {
+  const Similarity& match = matches.front();
   NamedMarkers mirrored = named;
   mirrored.places.row(0) *= -1;
-  if (NearestMatch(mirrored).rms < 0.6 * match.rms) {
+  if (Matches(mirrored).front().rms < 0.6 * match.rms) {
     return absl::InvalidArgumentError(absl::StrCat(
         source,
         ": the named markers are the mirror image of a chest: an axis has the wrong sign, or left and right are "
@@ -153,6 +165,14 @@ absl::Status CheckMatch(const std::string& source, const NamedMarkers& named, co
         "%s: the named markers lie %.3g times as far apart as the scene's bones: are they in mm, and is each over the "
         "bone that it is named after?",
         source, scale));
+  }
+  for (const Similarity& other : matches) {
+    const Points apart = other.to_scene * named.places - match.to_scene * named.places;
+    if (other.rms > 1.5 * match.rms + 0.003 || std::sqrt(apart.colwise().squaredNorm().mean()) < kAmbiguous) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(source,
+                     ": the named markers fit onto their bones in two ways: name where on a bone they are, such as "
+                     "\"rib-7-right front\" (also side, back), or name markers over more bones of both sides"));
   }
   if (match.rms <= kMostCageRms) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrFormat(
@@ -257,8 +277,9 @@ absl::StatusOr<CageRegistration> RegisterToCage(const physiology::Subject& subje
   }
   const NamedMarkers named = NamedOnes(markers, bones);
   if (absl::Status status = CheckNamed(source, named); !status.ok()) return status;
-  const Similarity match = NearestMatch(named);
-  if (absl::Status status = CheckMatch(source, named, match); !status.ok()) return status;
+  const std::vector<Similarity> matches = Matches(named);
+  if (absl::Status status = CheckMatch(source, named, matches); !status.ok()) return status;
+  const Similarity& match = matches.front();
   CageRegistration cage;
   cage.to_scene = match.to_scene;
   cage.scale = std::cbrt(match.to_scene.linear().determinant());

@@ -1,6 +1,7 @@
 #include "server/fit/traces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
@@ -228,13 +229,15 @@ absl::Status CheckBreaths(Traced traced, std::string_view name, TracedBreaths& b
 
 std::vector<int> SamplesOf(const TracedBreaths& breaths, bool held_out) {
   constexpr int kParts = 16;  // of a single breath
+  const int count = static_cast<int>(breaths.phase.size());
   const bool single = breaths.lengths.size() < 2;
-  std::vector<int> samples;
-  for (int i = 0; i < static_cast<int>(breaths.phase.size()); ++i) {
-    const int block = single ? static_cast<int>(kParts * breaths.phase[i]) : breaths.breath[i];
-    if ((block % 2 == 1) == held_out) samples.push_back(i);
+  std::array<std::vector<int>, 2> samples;
+  for (int i = 0; i < count; ++i) {
+    const int block = single ? kParts * i / count : breaths.breath[i];
+    samples[block % 2].push_back(i);
   }
-  return samples;
+  if (samples[0].empty()) std::swap(samples[0], samples[1]);
+  return samples[held_out ? 1 : 0];
 }
 
 std::vector<int> BreathsOf(const TracedBreaths& breaths, bool held_out) {

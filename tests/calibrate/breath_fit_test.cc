@@ -123,11 +123,11 @@ TEST_F(FittedThorax, SaysWhatAVolumeCannotTell) {
   fit::MeasuredFile volume = RecordingOf(fit::Measured::kVolume, 0.02, 5);
   volume.error = 0.02;
   const std::vector<std::string> both = {"diaphragm_activation", "intercostal_activation"};
-  const auto alone = Fitted(DataOf({volume}), both, 2), with_dome = Fitted(BothRecordings(), both, 2);
+  const auto alone = Fitted(DataOf({volume}), both, 1), with_dome = Fitted(BothRecordings(), both, 1);
   ASSERT_TRUE(alone.ok() && with_dome.ok()) << alone.status() << with_dome.status();
   EXPECT_LT(alone->correlation(0, 1), -0.5);
   for (size_t k = 0; k < 2; ++k) EXPECT_LT(with_dome->numbers[k].standard_error, alone->numbers[k].standard_error);
-  EXPECT_NEAR(alone->derived[0].value, with_dome->derived[0].value, 0.06) << "the tidal volume is told by both";
+  EXPECT_NEAR(alone->derived[0].value, with_dome->derived[0].value, 0.1) << "the tidal volume is told by both";
 }
 
 TEST_F(FittedThorax, IsTheSameOnAnyNumberOfThreadsAndStopsWhenAsked) {

@@ -85,12 +85,29 @@ TEST_F(MarkedThorax, FindsTheCageFromAnyFrame) {
     const fit::Evidence::MarkerFile file = Marked(Laboratory(), named);
     const auto cage = RegisterToCage(*subject_, "lab.csv", file.markers);
     ASSERT_TRUE(cage.ok()) << cage.status();
-    EXPECT_LT(cage->rms, 0.015);
+    EXPECT_LT(cage->rms, 0.02);
     EXPECT_NEAR(cage->scale, 1, 0.15);
     const Points home = Laboratory().inverse() * file.markers.rest, found = cage->to_scene * file.markers.rest;
     const double off = std::sqrt((home - found).colwise().squaredNorm().mean());
     std::printf("%d named of %ld: off by %.1f mm, scale %.3f\n", cage->named, static_cast<long>(home.cols()),
                 1000 * off, cage->scale);
+    EXPECT_LT(off, 0.02);
+  }
+}
+
+// Without the points of the bones, markers of one side alone may slide along the ribs: that is refused, or right.
+TEST_F(MarkedThorax, NeverPlacesMarkersWrongly) {
+  for (const int named : {6, 10, 29}) {
+    fit::Markers markers = Marked(Laboratory(), named).markers;
+    for (std::string& name : markers.names) name = name.substr(0, name.find(' '));
+    const auto cage = RegisterToCage(*subject_, "lab.csv", markers);
+    if (!cage.ok()) {
+      std::printf("%d named: %s\n", named, std::string(cage.status().message()).c_str());
+      continue;
+    }
+    const Points home = Laboratory().inverse() * markers.rest, found = cage->to_scene * markers.rest;
+    const double off = std::sqrt((home - found).colwise().squaredNorm().mean());
+    std::printf("%d named without points: off by %.1f mm\n", named, 1000 * off);
     EXPECT_LT(off, 0.03);
   }
 }

@@ -173,6 +173,7 @@ TEST(Register, ToSurfacesTellsHowFarTheyAre) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   ASSERT_EQ(outcome.json()["structures"].size(), 2u);
   EXPECT_LT(outcome.json()["structures"][0]["mean_mm"], 4);
+  EXPECT_LE(outcome.json()["structures"][0]["bent_mean_mm"], outcome.json()["structures"][0]["mean_mm"]);
   const Outcome swapped = Phrenic({"register", "thorax", "--resolution", "12", "--surface", "lung-right=" + left,
                                    "--surface", "lung-left=" + right});
   EXPECT_EQ(swapped.code, 1);

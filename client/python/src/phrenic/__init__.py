@@ -67,6 +67,6 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Imports the modules that few programs need when they are first used: phrenic.motion.to_netcdf(...)."""
-    if name in ("gym", "motion", "notebook", "vector"):
+    if name in ("gym", "motion", "notebook", "people", "vector"):
         return import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
