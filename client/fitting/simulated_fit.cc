@@ -5,6 +5,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/scene_argument.h"
@@ -72,6 +73,12 @@ bool Sets(const v1::Parameters& settings, const std::vector<calibrate::FittedPar
   return settings.GetReflection()->HasField(settings, settings.GetDescriptor()->FindFieldByName(name));
 }
 
+// For a text that people read; the breath changes by a ten-thousandth.
+double InFiveDigits(double value) {
+  double rounded = value;
+  return absl::SimpleAtod(absl::StrFormat("%.5g", value), &rounded) ? rounded : value;
+}
+
 v1::Preset PresetToBegin(const v1::Scene& scene, const std::string& name) {
   for (const v1::Preset& preset : scene.presets()) {
     if (preset.name() == name) return preset;
@@ -94,8 +101,9 @@ absl::StatusOr<SimulatedFit> FitSimulation(const Context& context, const v1::Sce
   const absl::StatusOr<v1::Parameters> preset = FindPreset(made.scene, options.preset);
   if (!preset.ok()) return preset.status();
   made.preset = PresetToBegin(made.scene, options.preset);
-  v1::Parameters start = (*model)->parameters, own = *preset;
+  v1::Parameters start = (*model)->parameters, own = made.preset.parameters();
   own.MergeFrom(*settings);
+  start.MergeFrom(*preset);  // with what other presets set
   start.MergeFrom(own);
   const auto subject = physiology::Subject::Of(**model);
   if (!subject.ok()) return subject.status();
@@ -123,7 +131,7 @@ absl::StatusOr<SimulatedFit> FitSimulation(const Context& context, const v1::Sce
   made.breath = *std::move(found);
   made.breath.doubts.insert(made.breath.doubts.begin(), first.doubts.begin(), first.doubts.end());
   for (const calibrate::FittedParameter& each : parameters) {
-    calibrate::SetValue(each.varied, calibrate::ValueOf(each.varied, made.breath.parameters), own);
+    calibrate::SetValue(each.varied, InFiveDigits(calibrate::ValueOf(each.varied, made.breath.parameters)), own);
   }
   made.preset.set_name("fitted");
   made.preset.set_title("Fitted to a person");

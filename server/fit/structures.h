@@ -38,8 +38,8 @@ std::vector<StructureResidual> CompareStructures(const LungTemplates& templates,
 // whose surface springs pull to the nearest of the person's, at most kMostBend, in eight rounds. The springs are
 // kBendStiffness times the modulus per area, so that the bend is smooth over 1/kBendStiffness: bends of ribs and heart
 // are followed, noise is not. Where it would fold, it is lessened.
-inline constexpr double kMostBend = 0.03;     // [m]
-inline constexpr double kBendStiffness = 60;  // [1/m]
+inline constexpr double kMostBend = 0.03;      // [m]
+inline constexpr double kBendStiffness = 300;  // [1/m]
 struct BentLungs {
   std::array<Mesh, 2> surfaces;       // by Side
   std::array<double, 2> most = {};    // that a vertex was bent by [m]

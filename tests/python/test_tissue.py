@@ -30,7 +30,7 @@ class TissueTest(SessionTest):
         for name, lung in s.tissue().lungs.items():
             lattice = lung.lattice
             self.assertEqual(lung.displacement.shape, lattice.nodes.shape)
-            self.assertAlmostEqual(np.sum(lung.ventilation * lattice.volumes) / lung.volume, 1, delta=0.02)
+            self.assertAlmostEqual(np.sum(lung.ventilation * lattice.volumes) / lung.volume, 1, delta=0.05)
             k = int(np.argmax(lattice.volumes))  # a brick that is inside
             point = s.tissue([lattice.centres[k]]).points[0]
             self.assertEqual(point["lung"], name)
