@@ -95,10 +95,12 @@ absl::StatusOr<SimulatedFit> FitSimulation(const Context& context, const v1::Sce
   SimulatedFit made;
   const absl::StatusOr<v1::Parameters> settings = ReadSettings(options.settings);
   if (!settings.ok()) return settings.status();
+  const absl::StatusOr<v1::Scene> scene = LocalModels(data_dir).Resolve(source);
+  if (!scene.ok()) return scene.status();
+  made.scene = *scene;  // with presets as they are written
   const auto model = CompileLocally(context, source, name, data_dir);
   if (!model.ok()) return model.status();
-  made.scene = (*model)->scene;
-  const absl::StatusOr<v1::Parameters> preset = FindPreset(made.scene, options.preset);
+  const absl::StatusOr<v1::Parameters> preset = FindPreset((*model)->scene, options.preset);
   if (!preset.ok()) return preset.status();
   made.preset = PresetToBegin(made.scene, options.preset);
   v1::Parameters start = (*model)->parameters, own = made.preset.parameters();
