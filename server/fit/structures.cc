@@ -17,7 +17,9 @@ constexpr double kGridSpacing = 0.007, kInside = 0.002;  // [m]
 constexpr double kDownwards = -0.5;                      // z of the normals of a base
 constexpr double kNoContact = 1e-3;                      // [1/m]
 constexpr double kLeastOfVolume = 0.2;                   // that a part of a lung keeps when it is bent
-constexpr int kBendRounds = 8;
+constexpr int kBendRounds = 10;
+constexpr double kSoftest = 20, kStiffening = 1.8;  // of the springs: of the first round [1/m], from one to the next
+constexpr double kSettled = 1e-4;                   // [m]
 
 const PersonStructure* FindStructure(const std::vector<PersonStructure>& structures, const std::string& name) {
   for (const PersonStructure& each : structures) {
@@ -147,18 +149,22 @@ absl::StatusOr<Points> BendOnto(const LungTissue& tissue, const Mesh& target) {
   tree.Fit(target.vertices, boxes);
   Mesh moved = tissue.surface();
   Points nodes = Points::Zero(3, tissue.grid().nodes().cols());
-  double stiffness = kBendStiffness;
+  double stiffness = kSoftest, growth = kStiffening;
   for (int round = 0; round < kBendRounds; ++round) {
     const BendPairs pairs = PairsFor(tissue.surface(), moved, target, tree, boxes);
     const double weight = stiffness * tissue.areas().sum() / static_cast<double>(pairs.from.cols());
     absl::StatusOr<Points> next = tissue.SolveThrough(pairs.from, pairs.vectors, weight);
     if (!next.ok()) return next.status();
-    if (LeastVolume(tissue, *next) < kLeastOfVolume) {
-      stiffness /= 3;
+    if (LeastVolume(tissue, *next) < kLeastOfVolume) {  // go on as stiff as did not fold
+      stiffness /= growth * growth;
+      growth = 1;
       continue;
     }
+    const double change = (*next - nodes).colwise().norm().maxCoeff();
     nodes = *std::move(next);
     moved.vertices = tissue.surface().vertices + ShiftsOf(tissue, nodes);
+    stiffness = std::min(kBendStiffness, growth * stiffness);
+    if (change < kSettled) break;
   }
   return nodes;
 }

@@ -35,9 +35,8 @@ std::vector<StructureResidual> CompareStructures(const LungTemplates& templates,
                                                  const std::vector<PersonStructure>& structures);
 
 // The registered lungs, bent onto a person's surfaces by the smallest deformation of an elastic body (lung_tissue.h)
-// whose surface springs pull to the nearest of the person's, at most kMostBend, in eight rounds. The springs are
-// kBendStiffness times the modulus per area, so that the bend is smooth over 1/kBendStiffness: bends of ribs and heart
-// are followed, noise is not. Where it would fold, it is lessened.
+// whose surface springs pull to the nearest of the person's, at most kMostBend. In up to ten rounds the springs become
+// stiffer, to kBendStiffness times the modulus per area at most, as long as nothing folds.
 inline constexpr double kMostBend = 0.03;      // [m]
 inline constexpr double kBendStiffness = 300;  // [1/m]
 struct BentLungs {
