@@ -19,6 +19,7 @@
 #include "client/files/person_structures.h"
 #include "client/files/scene_lungs.h"
 #include "client/files/whole_file.h"
+#include "client/fitting/simulated_fit.h"
 #include "client/print/joint_fit.h"
 #include "client/print/motion_fit.h"
 #include "client/print/output.h"
@@ -44,6 +45,7 @@ struct FitCommandOptions {
   MeasuredOptions data;
   std::optional<double> descent, tidal_volume;  // [mm], [l]
   fit::FitOptions fit;
+  SimulatedFitOptions simulated;
   bool show_landmarks = false;                     // in the scene
   std::string data_dir, residuals, expected, out;  // files; empty: none
   std::string source;
@@ -51,14 +53,13 @@ struct FitCommandOptions {
 
 int FailFit(const Context& context, const absl::Status& status) { return Fail(context, service::ToGrpc(status)); }
 
-// Writes the registered lungs as surfaces.
-absl::Status WriteLungs(const std::string& folder, const fit::LungTemplates& templates,
-                        const fit::RegisteredLungs& registered) {
+// Writes lungs as surfaces.
+absl::Status WriteLungs(const std::string& folder, const std::array<Mesh, 2>& lungs) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   for (const fit::Side side : {fit::kRight, fit::kLeft}) {
     const std::string file = absl::StrCat(folder, side == fit::kLeft ? "/lung-left.obj" : "/lung-right.obj");
-    const auto bytes = meshio::Write(file, registered.lungs[side].Apply(templates[side].surface()), 0.001);
+    const auto bytes = meshio::Write(file, lungs[side], 0.001);
     if (!bytes.ok()) return bytes.status();
     if (absl::Status status = WriteWhole(file, *bytes); !status.ok()) return status;
     std::cerr << "wrote " << file << "\n";
@@ -103,7 +104,19 @@ int RegisterPerson(const Context& context, const RegisterOptions& options) {
       WithProgress("registering", [&] { return fit::RegisterLungs(lungs->templates, input->points); });
   if (!registered.ok()) return FailFit(context, registered.status());
   PrintDoubts(*registered);
-  const auto residuals = fit::CompareStructures(lungs->templates, *registered, input->structures);
+  std::array<Mesh, 2> surfaces;
+  for (const fit::Side side : {fit::kRight, fit::kLeft}) {
+    surfaces[side] = registered->lungs[side].Apply(lungs->templates[side].surface());
+  }
+  StructureResiduals residuals;
+  if (!input->structures.empty()) {
+    const auto bent =
+        WithProgress("bending", [&] { return fit::BendLungs(lungs->templates, *registered, input->structures); });
+    if (!bent.ok()) return FailFit(context, bent.status());
+    surfaces = bent->surfaces;
+    residuals = {fit::CompareStructures(lungs->templates, *registered, input->structures),
+                 fit::CompareStructures(*bent, input->structures), bent->most};
+  }
   if (context.json()) {
     PrintJson(RegistrationJson(*registered, residuals));
   } else if (context.output == Output::kCsv) {
@@ -113,7 +126,7 @@ int RegisterPerson(const Context& context, const RegisterOptions& options) {
     PrintStructures(residuals);
   }
   if (options.out.empty()) return kOk;
-  const absl::Status written = WriteLungs(options.out, lungs->templates, *registered);
+  const absl::Status written = WriteLungs(options.out, surfaces);
   return written.ok() ? kOk : Fail(written);
 }
 
@@ -132,7 +145,23 @@ std::string JointUsageFault(const FitCommandOptions& options) {
   return "";
 }
 
+std::string SimulatedUsageFault(const FitCommandOptions& options) {
+  if (options.descent || options.tidal_volume || options.fit.assimilate || options.show_landmarks ||
+      !options.expected.empty() || !options.residuals.empty()) {
+    return "--parameters fits a simulation: leave --descent, --tidal-volume, --assimilate, --show-landmarks, "
+           "--expected "
+           "and --residuals out";
+  }
+  const MeasuredOptions& data = options.data;
+  if (!data.landmarks.empty() || !data.surfaces.empty() || !data.lung_surfaces.empty() || !data.volumes.empty() ||
+      !data.m_modes.empty() || !data.markers.empty()) {
+    return "";
+  }
+  return "--parameters needs data: --volume, --m-mode, --markers, --landmarks, --surface or --lung-surface";
+}
+
 std::string FitUsageFault(const FitCommandOptions& options) {
+  if (!options.simulated.parameters.empty()) return SimulatedUsageFault(options);
   if (HasOtherKinds(options.data)) return JointUsageFault(options);
   const bool number = options.descent || options.tidal_volume;
   if (options.data.landmarks.empty() == options.data.exhale.empty()) {
@@ -190,6 +219,30 @@ int WriteJoint(const FitCommandOptions& options, const fit::SceneLungs& lungs, c
   if (options.residuals.empty()) return kOk;
   if (const absl::Status status = WriteResiduals(options.residuals, found.motion); !status.ok()) return Fail(status);
   std::cerr << "wrote " << options.residuals << "\n";
+  return kOk;
+}
+
+// Fits live parameters by simulated breaths.
+int FitParameters(const Context& context, const FitCommandOptions& options) {
+  const auto files = ReadMeasured(options.data);
+  if (!files.ok()) return Fail(files.status());
+  const auto evidence = fit::ParseEvidence(*files);
+  if (!evidence.ok()) return Fail(evidence.status());
+  const absl::StatusOr<v1::SceneSource> scene = ReadScene(options.scene);
+  if (!scene.ok()) return Fail(scene.status());
+  absl::StatusOr<SimulatedFit> found = absl::UnknownError("");
+  {
+    Progress progress("fitting " + options.scene.scene, 1);
+    const fit::FitProgress show = ShowOn(progress, context);
+    found = FitSimulation(context, *scene, options.scene.scene, *evidence, options.simulated, options.fit,
+                          options.data_dir, [&](double done, const std::string& stage) { return show(done, stage); });
+  }
+  if (!found.ok()) return FailFit(context, found.status());
+  const std::string source = SourceOf(options, *files);
+  PrintSimulated(context, *found, source);
+  if (options.out.empty()) return kOk;
+  if (const absl::Status status = WriteSimulatedScene(options.out, *found, source); !status.ok()) return Fail(status);
+  std::cerr << "wrote " << options.out << "\n";
   return kOk;
 }
 
@@ -337,6 +390,7 @@ int FitPerson(const Context& context, const FitCommandOptions& options) {
     Fail(absl::InvalidArgumentError(fault));
     return kUsage;
   }
+  if (!options.simulated.parameters.empty()) return FitParameters(context, options);
   if (HasOtherKinds(options.data)) return FitAll(context, options);
   return options.data.landmarks.empty() ? FitOneNumber(context, options) : FitLandmarks(context, options);
 }
@@ -422,6 +476,16 @@ CommandFunction SetUpFit(CLI::App& command) {
       ->check(NumberIn(0, 150));
   command.add_option("--tidal-volume", options->tidal_volume, "change of the lungs' volume [l], with --exhale")
       ->check(NumberIn(0, 8));
+  command
+      .add_option("--parameters", options->simulated.parameters,
+                  "fit live parameters of the scene by simulated breaths, such as diaphragm_activation, "
+                  "intercostal_activation, lung_compliance:0.1:0.3")
+      ->delimiter(',')
+      ->check(ParsedBy([](const std::string& text) { return calibrate::ReadVaried(text).status(); }))
+      ->allow_extra_args(false);
+  command.add_option("--preset", options->simulated.preset, "the preset that --parameters begins with")
+      ->capture_default_str();
+  AddParameters(command, options->simulated.settings);
   command.add_option("--modes", options->fit.numbers, "numbers that a breath is made of")->capture_default_str();
   command.add_option("--split", options->fit.split, "seed of the random half that is fitted")
       ->check(NumberIn(0, 4294967295))

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -18,10 +19,12 @@
 #include "server/imaging/gzip.h"
 #include "server/imaging/nifti_vectors.h"
 #include "server/mechanics/compile/presets.h"
+#include "server/mechanics/motions/lung_modes.h"
 #include "server/mesh/units.h"
 #include "server/physiology/lung_breath.h"
 #include "server/service/calls/status.h"
 #include "server/vtk/image_data.h"
+#include "server/vtk/unstructured_grid.h"
 
 namespace phrenic::client {
 namespace {
@@ -54,10 +57,11 @@ absl::Status CheckField(const LungsOptions& options) {
   if (options.presets.size() > 1) {
     return absl::InvalidArgumentError("--grid holds one breath: give one --preset with it");
   }
-  for (const char* ending : {".vti", ".nii", ".nii.gz"}) {
+  for (const char* ending : {".vti", ".vtu", ".nii", ".nii.gz"}) {
     if (absl::EndsWith(options.field, ending)) return absl::OkStatus();
   }
-  return absl::InvalidArgumentError(absl::StrCat("--grid ", options.field, ": the formats are .vti, .nii and .nii.gz"));
+  return absl::InvalidArgumentError(
+      absl::StrCat("--grid ", options.field, ": the formats are .vti, .vtu, .nii and .nii.gz"));
 }
 
 absl::StatusOr<std::shared_ptr<const Model>> CompileLungs(const Context& context, const LungsOptions& options) {
@@ -86,7 +90,41 @@ absl::StatusOr<physiology::Recording> Breathe(const Context& context, const phys
   return absl::FailedPreconditionError(absl::StrCat(preset, ": ", breath->problem));
 }
 
+// The bricks of the lungs' tissue, with what moves their corners.
+UnstructuredGrid BricksOf(const std::vector<LungMotion>& motions) {
+  Eigen::Index nodes = 0, bricks = 0;
+  for (const LungMotion& motion : motions) {
+    nodes += motion.nodes.cols();
+    bricks += static_cast<Eigen::Index>(motion.tissue.grid().bricks().size());
+  }
+  UnstructuredGrid grid = {Eigen::Matrix3Xd(3, nodes), Eigen::Matrix<int, 8, Eigen::Dynamic>(8, bricks), {}, {}};
+  Eigen::MatrixXf displacement(3, nodes), ventilation(1, bricks), inside(1, bricks), lung(1, bricks);
+  Eigen::Index node = 0, brick = 0;
+  for (size_t i = 0; i < motions.size(); ++i) {
+    const BrickGrid& of = motions[i].tissue.grid();
+    grid.points.middleCols(node, of.nodes().cols()) = kMillimetresAMetre * of.nodes();
+    displacement.middleCols(node, of.nodes().cols()) = (kMillimetresAMetre * motions[i].nodes).cast<float>();
+    for (size_t b = 0; b < of.bricks().size(); ++b, ++brick) {
+      grid.cells.col(brick) = of.bricks()[b].array() + static_cast<int>(node);
+      const Eigen::Vector3d middle = of.nodes().col(of.bricks()[b][0]).array() + of.edge() / 2;
+      ventilation(0, brick) = static_cast<float>(motions[i].tissue.GradientAt(motions[i].nodes, middle).trace());
+      const BrickFractions& parts = of.fractions()[b];
+      inside(0, brick) = std::accumulate(parts.begin(), parts.end(), 0.0F) / static_cast<float>(parts.size());
+      lung(0, brick) = static_cast<float>(i + 1);
+    }
+    node += of.nodes().cols();
+  }
+  grid.point_arrays = {{"displacement", displacement}};
+  grid.cell_arrays = {{"ventilation", ventilation}, {"inside", inside}, {"lung", lung}};
+  return grid;
+}
+
 absl::Status WriteField(const std::vector<LungMotion>& motions, const LungsOptions& options) {
+  if (absl::EndsWith(options.field, ".vtu")) {
+    if (absl::Status status = WriteWhole(options.field, WriteVtu(BricksOf(motions))); !status.ok()) return status;
+    std::cerr << "wrote " << options.field << "\n";
+    return absl::OkStatus();
+  }
   const absl::StatusOr<LungField> sampled = SampleLungs(motions, options.spacing_mm / kMillimetresAMetre);
   if (!sampled.ok()) return sampled.status();
   const LungField& field = *sampled;
@@ -112,11 +150,37 @@ absl::Status WriteField(const std::vector<LungMotion>& motions, const LungsOptio
   return absl::OkStatus();
 }
 
+// The lungs of a person's scene, which boundary modes move: their breath is known without running it.
+absl::StatusOr<std::vector<LungsOfBreath>> ReadModes(const Model& model, const v1::Parameters& settings,
+                                                     const LungsOptions& options) {
+  if (options.glued) {
+    return absl::FailedPreconditionError("the motion of these lungs' walls is prescribed: --glued changes nothing");
+  }
+  std::vector<LungsOfBreath> breaths;
+  const auto presets = options.presets.empty() ? std::vector<std::string>{""} : options.presets;
+  for (const std::string& preset : presets) {
+    const auto parameters = LungParameters(model, preset, settings);
+    if (!parameters.ok()) return parameters.status();
+    const auto motions = physiology::MotionsOfModes(model, *parameters);
+    if (!motions.ok()) return motions.status();
+    LungsOfBreath breath = {preset, std::nan(""), physiology::ReadingsOf(*motions)};
+    const std::vector<LungModes::Inside>& insides = LungModes::Find(model)->insides();
+    for (size_t i = 0; i < breath.lungs.size(); ++i) {
+      breath.lungs[i].lung = model.bodies[static_cast<size_t>(insides[i].body)].name;
+    }
+    breaths.push_back(std::move(breath));
+    if (options.field.empty()) continue;
+    if (absl::Status status = WriteField(*motions, options); !status.ok()) return status;
+  }
+  return breaths;
+}
+
 absl::StatusOr<std::vector<LungsOfBreath>> ReadBreaths(const Context& context, const LungsOptions& options) {
   const absl::StatusOr<v1::Parameters> settings = ReadSettings(options.settings);
   if (!settings.ok()) return settings.status();
   const auto model = CompileLungs(context, options);
   if (!model.ok()) return model.status();
+  if (LungModes::Find(**model) != nullptr) return ReadModes(**model, *settings, options);
   const auto subject = physiology::Subject::Of(**model);
   if (!subject.ok()) return subject.status();
   LungElasticity elasticity = {.edge = options.edge_mm / kMillimetresAMetre};
@@ -162,8 +226,9 @@ void PrintLungs(const Context& context, const std::vector<LungsOfBreath>& breath
   for (const LungsOfBreath& breath : breaths) {
     double tissue = 0;
     for (const LungReading& lung : breath.lungs) tissue += lung.volume;
-    std::cout << absl::StrFormat("%s: the tissue gains %.0f ml, the lungs %.0f ml of air\n",
-                                 breath.preset.empty() ? "breath" : breath.preset, 1e6 * tissue, 1e6 * breath.air);
+    std::cout << absl::StrFormat("%s: the tissue gains %.0f ml", breath.preset.empty() ? "breath" : breath.preset,
+                                 1e6 * tissue);
+    std::cout << (std::isnan(breath.air) ? "\n" : absl::StrFormat(", the lungs %.0f ml of air\n", 1e6 * breath.air));
   }
 }
 
@@ -184,7 +249,8 @@ void PrintLungsJson(const std::vector<LungsOfBreath>& breaths) {
                        {"back_over_front", lung.back_over_front},
                        {"upwards", lung.upwards}});
     }
-    json.push_back({{"preset", breath.preset}, {"air_ml", 1e6 * breath.air}, {"lungs", lungs}});
+    json.push_back({{"preset", breath.preset}, {"lungs", lungs}});
+    if (!std::isnan(breath.air)) json.back()["air_ml"] = 1e6 * breath.air;
   }
   PrintJson(json);
 }
@@ -209,9 +275,10 @@ CommandFunction SetUpLungs(CLI::App& command) {
       .add_option("--preset", options->presets, "a preset of the scene; may be repeated (the scene's own parameters)")
       ->allow_extra_args(false);
   AddParameters(command, options->settings);
-  command.add_option("--grid", options->field,
-                     "write displacement [mm, LPS] and ventilation at the peak of the breath to this file: .vti, or "
-                     ".nii and .nii.gz (displacement alone, as ITK and ANTs read it)");
+  command.add_option(
+      "--grid", options->field,
+      "write displacement [mm, LPS] and ventilation at the peak of the breath to this file: .vti, "
+      ".vtu (the bricks of the tissue), or .nii and .nii.gz (displacement alone, as ITK and ANTs read it)");
   command.add_option("--spacing", options->spacing_mm, "distance of the field's points [mm]")
       ->check(NumberIn(0.5, 50))
       ->capture_default_str();

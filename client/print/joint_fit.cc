@@ -44,9 +44,9 @@ JointJson QuantitiesJson(const std::vector<fit::FittedQuantity>& quantities) {
   return list;
 }
 
-JointJson KindsJson(const fit::JointFit& fit) {
+JointJson KindsJson(const std::vector<fit::KindReport>& kinds) {
   JointJson list = JointJson::array();
-  for (const fit::KindReport& each : fit.kinds) {
+  for (const fit::KindReport& each : kinds) {
     const double unit = each.kind.per_unit;
     JointJson kind = {{"kind", each.kind.kind},
                       {"source", each.kind.source},
@@ -80,10 +80,10 @@ Table QuantityTable(const std::vector<fit::FittedQuantity>& quantities) {
   return table;
 }
 
-Table KindTable(const fit::JointFit& fit) {
+Table KindTable(const std::vector<fit::KindReport>& kinds) {
   Table table({"kind", "file", "data", "error", "unit", "rms at rest", "rms before", "rms after", "held out",
                "their rms at rest", "their rms"});
-  for (const fit::KindReport& each : fit.kinds) {
+  for (const fit::KindReport& each : kinds) {
     const double unit = each.kind.per_unit;
     table.Add({each.kind.kind, each.kind.source, absl::StrCat(each.fitting), Shown(each.kind.sd / unit), each.kind.unit,
                Shown(each.still / unit), Shown(each.before / unit), Shown(each.after / unit),
@@ -103,25 +103,33 @@ void AddRows(const char* kind, const std::vector<fit::FittedQuantity>& quantitie
 
 }  // namespace
 
+nlohmann::json FittedJson(const std::vector<fit::FittedQuantity>& numbers,
+                          const std::vector<fit::FittedQuantity>& derived, const std::vector<fit::KindReport>& kinds) {
+  return {{"fitted", QuantitiesJson(numbers)}, {"derived", QuantitiesJson(derived)}, {"kinds", KindsJson(kinds)}};
+}
+
+void PrintFitted(const std::vector<fit::FittedQuantity>& numbers, const std::vector<fit::FittedQuantity>& derived,
+                 const std::vector<fit::KindReport>& kinds) {
+  QuantityTable(numbers).Print(std::cout);
+  std::cout << "\nwhat follows from them:\n";
+  QuantityTable(derived).Print(std::cout);
+  std::cout << "\nhow well the data are met, root mean squares:\n";
+  KindTable(kinds).Print(std::cout);
+}
+
 nlohmann::json JointFitJson(const fit::JointFit& fit, const fit::FitOptions& options) {
   JointJson result = FitJson(fit.motion, options);
   for (const char* name : {"held_out_mean_mm", "held_out_p95_mm", "fitting_mean_mm"}) {
     if (result[name].is_number() && !std::isfinite(result[name].get<double>())) result[name] = nullptr;
   }
-  result["fitted"] = QuantitiesJson(fit.numbers);
-  result["derived"] = QuantitiesJson(fit.derived);
-  result["kinds"] = KindsJson(fit);
+  result.update(FittedJson(fit.numbers, fit.derived, fit.kinds));
   result["own_lungs"] = fit.own_lungs;
   return result;
 }
 
 void PrintJointFit(const fit::JointFit& fit, const fit::FitOptions& options) {
   if (fit.own_lungs) PrintRegistration(fit.motion.registered);
-  QuantityTable(fit.numbers).Print(std::cout);
-  std::cout << "\nwhat follows from them:\n";
-  QuantityTable(fit.derived).Print(std::cout);
-  std::cout << "\nhow well the data are met, root mean squares:\n";
-  KindTable(fit).Print(std::cout);
+  PrintFitted(fit.numbers, fit.derived, fit.kinds);
   if (fit.motion.baselines.empty()) return;
   std::cout << "\nlandmarks at end inhale that were not fitted:\n";
   PrintErrors(fit.motion);
@@ -129,21 +137,26 @@ void PrintJointFit(const fit::JointFit& fit, const fit::FitOptions& options) {
                                fit.motion.exhale.cols(), options.split);
 }
 
-void PrintJointFitCsv(const fit::JointFit& fit) {
+void PrintFittedCsv(const std::vector<fit::FittedQuantity>& numbers, const std::vector<fit::FittedQuantity>& derived,
+                    const std::vector<fit::KindReport>& kinds, const std::vector<fit::Baseline>& baselines) {
   Table rows({"kind", "name", "unit", "data", "value", "standard_error", "prior", "prior_sd", "still", "before",
               "after", "held_out"});
-  AddRows("fitted", fit.numbers, rows);
-  AddRows("derived", fit.derived, rows);
-  for (const fit::KindReport& each : fit.kinds) {
+  AddRows("fitted", numbers, rows);
+  AddRows("derived", derived, rows);
+  for (const fit::KindReport& each : kinds) {
     const double unit = each.kind.per_unit;
     rows.Add({"data", each.kind.kind, each.kind.unit, absl::StrCat(each.fitting), "", Shown(each.kind.sd / unit), "",
               "", Shown(each.still / unit), Shown(each.before / unit), Shown(each.after / unit),
               Shown(each.held_out_after / unit)});
   }
-  for (const fit::Baseline& each : fit.motion.baselines) {
+  for (const fit::Baseline& each : baselines) {
     rows.Add({"baseline", each.name, "mm", "", "", "", "", "", "", "", "", Shown(1000 * each.held_out.mean)});
   }
   rows.PrintCsv(std::cout);
+}
+
+void PrintJointFitCsv(const fit::JointFit& fit) {
+  PrintFittedCsv(fit.numbers, fit.derived, fit.kinds, fit.motion.baselines);
 }
 
 }  // namespace phrenic::client

@@ -12,6 +12,13 @@ namespace phrenic::client {
 // fit.
 nlohmann::json JointFitJson(const fit::JointFit& fit, const fit::FitOptions& options);
 void PrintJointFit(const fit::JointFit& fit, const fit::FitOptions& options);
+// The same of numbers, what follows from them, and kinds, wherever they were fitted.
+nlohmann::json FittedJson(const std::vector<fit::FittedQuantity>& numbers,
+                          const std::vector<fit::FittedQuantity>& derived, const std::vector<fit::KindReport>& kinds);
+void PrintFitted(const std::vector<fit::FittedQuantity>& numbers, const std::vector<fit::FittedQuantity>& derived,
+                 const std::vector<fit::KindReport>& kinds);
+void PrintFittedCsv(const std::vector<fit::FittedQuantity>& numbers, const std::vector<fit::FittedQuantity>& derived,
+                    const std::vector<fit::KindReport>& kinds, const std::vector<fit::Baseline>& baselines);
 // Rows: kind, name, unit, data, value, standard_error, prior, prior_sd, still, before, after, held_out.
 void PrintJointFitCsv(const fit::JointFit& fit);
 

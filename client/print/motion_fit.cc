@@ -150,7 +150,7 @@ json TogetherJson(const fit::MotionStudy& study) {
 
 }  // namespace
 
-json RegistrationJson(const fit::RegisteredLungs& registered, const std::vector<fit::StructureResidual>& residuals) {
+json RegistrationJson(const fit::RegisteredLungs& registered, const StructureResiduals& residuals) {
   json lungs = json::array();
   for (int side = 0; side < 2; ++side) {
     const fit::Registration& lung = registered.lungs[side];
@@ -162,26 +162,35 @@ json RegistrationJson(const fit::RegisteredLungs& registered, const std::vector<
                      {"farthest_mm", RoundedMm(lung.farthest)}});
   }
   json result = {{"gap_x_mm", RoundedMm(registered.gap)}, {"lungs", lungs}, {"doubts", registered.doubts}};
-  for (const fit::StructureResidual& each : residuals) {
+  for (size_t i = 0; i < residuals.scaled.size(); ++i) {
+    const fit::StructureResidual &each = residuals.scaled[i], &bent = residuals.bent[i];
     result["structures"].push_back({{"name", each.name},
                                     {"shaped_by", each.shaped},
                                     {"points", each.points},
                                     {"mean_mm", RoundedMm(each.mean)},
-                                    {"p95_mm", RoundedMm(each.p95)}});
+                                    {"p95_mm", RoundedMm(each.p95)},
+                                    {"bent_mean_mm", RoundedMm(bent.mean)},
+                                    {"bent_p95_mm", RoundedMm(bent.p95)}});
+  }
+  if (!residuals.scaled.empty()) {
+    for (int side = 0; side < 2; ++side) result["lungs"][side]["bent_by_mm"] = RoundedMm(residuals.most[side]);
   }
   return result;
 }
 
-void PrintStructures(const std::vector<fit::StructureResidual>& residuals) {
-  if (residuals.empty()) return;
-  Table table({"structure", "points", "mean mm", "p95 mm", "of the person"});
-  for (const fit::StructureResidual& each : residuals) {
-    table.Add({each.name, absl::StrCat(each.points), Mm(each.mean), Mm(each.p95),
-               each.shaped ? "size and place along x, y, z; the shape is the template's"
+void PrintStructures(const StructureResiduals& residuals) {
+  if (residuals.scaled.empty()) return;
+  Table table({"structure", "points", "scaled: mean mm", "p95 mm", "bent: mean mm", "p95 mm", "of the person"});
+  for (size_t i = 0; i < residuals.scaled.size(); ++i) {
+    const fit::StructureResidual &each = residuals.scaled[i], &bent = residuals.bent[i];
+    table.Add({each.name, absl::StrCat(each.points), Mm(each.mean), Mm(each.p95), Mm(bent.mean), Mm(bent.p95),
+               each.shaped ? "size, place, and the bend; fissures and grain are the template's"
                            : "nothing: it judges the lungs' bases alone"});
   }
   std::cout << "\nregistered lungs against the person's surfaces:\n";
   table.Print(std::cout);
+  std::cout << absl::StrFormat("bent by at most %.1f mm (right) and %.1f (left)\n", 1000 * residuals.most[fit::kRight],
+                               1000 * residuals.most[fit::kLeft]);
 }
 
 void PrintRegistration(const fit::RegisteredLungs& registered) { RegistrationTable(registered).Print(std::cout); }

@@ -10,10 +10,13 @@
 
 namespace phrenic::client {
 
-// With the distances from the person's structures, if there are any.
-nlohmann::json RegistrationJson(const fit::RegisteredLungs& registered,
-                                const std::vector<fit::StructureResidual>& residuals = {});
-void PrintStructures(const std::vector<fit::StructureResidual>& residuals);
+// Distances from the person's structures, of the lungs as scaled, and as bent. Empty without structures.
+struct StructureResiduals {
+  std::vector<fit::StructureResidual> scaled, bent;
+  std::array<double, 2> most = {};  // that each lung was bent by, by Side [m]
+};
+nlohmann::json RegistrationJson(const fit::RegisteredLungs& registered, const StructureResiduals& residuals = {});
+void PrintStructures(const StructureResiduals& residuals);
 void PrintRegistration(const fit::RegisteredLungs& registered);
 void PrintRegistrationCsv(const fit::RegisteredLungs& registered);
 // On standard error.

@@ -72,6 +72,7 @@ constexpr Rule kRules[] = {
     {"StudyService.CheckPhysiology", kOwner, kNone, kReads},
     {"StudyService.RunBatch", kOwner, kNone, kReads},
     {"FitService.FitMotion", kOwner, kNone, kReads},
+    {"FitService.StudyMotion", kOwner, kNone, kReads},
 };
 
 constexpr std::string_view kRoleNames[] = {"", "viewer", "controller", "owner", "admin"};

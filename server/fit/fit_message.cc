@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace phrenic::fit {
 namespace {
@@ -135,6 +136,31 @@ v1::MotionFitResult JointFitMessage(const JointFit& fit, const FitOptions& optio
   for (const KindReport& each : fit.kinds) SetKind(each, *result.add_kinds());
   result.set_own_lungs(fit.own_lungs);
   return result;
+}
+
+v1::MotionOfPerson PersonMessage(const StudiedPerson& person, const FitOptions& options) {
+  v1::MotionOfPerson message;
+  message.set_name(person.name);
+  message.set_pairs(person.pairs);
+  *message.mutable_fit() = FitMessage(person.fit, options);
+  message.mutable_fit()->clear_points();
+  message.mutable_fit()->clear_correlation();
+  if (person.from_one_number) SetError(*person.from_one_number, *message.mutable_from_one_number());
+  return message;
+}
+
+v1::MotionOfPeople PeopleMessage(const MotionStudy& study) {
+  v1::MotionOfPeople message;
+  std::vector<ErrorSummary> own, one;
+  for (const StudiedPerson& person : study.people) {
+    own.push_back(person.fit.held_out);
+    if (person.from_one_number) one.push_back(*person.from_one_number);
+  }
+  SetError(MeanOf(own), *message.mutable_held_out());
+  if (!one.empty()) SetError(MeanOf(one), *message.mutable_from_one_number());
+  message.mutable_mean()->Add(study.together.mean.begin(), study.together.mean.end());
+  message.mutable_spread()->Add(study.together.spread.begin(), study.together.spread.end());
+  return message;
 }
 
 }  // namespace phrenic::fit

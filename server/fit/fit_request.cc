@@ -1,6 +1,7 @@
 #include "server/fit/fit_request.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -26,9 +27,12 @@ bool IsSceneName(std::string_view name) {
          std::ranges::all_of(name, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; });
 }
 
-absl::StatusOr<Landmarks> ReadFile(const v1::FitMotionRequest& request, int index) {
-  const v1::LandmarkFile& file = request.landmarks(index);
-  const std::string field = absl::StrCat("landmarks[", index, "]");
+// Of FitMotionRequest.landmarks or MotionCase.landmarks.
+using LandmarkFiles = google::protobuf::RepeatedPtrField<v1::LandmarkFile>;
+
+absl::StatusOr<Landmarks> ReadFile(const LandmarkFiles& files, int index, const std::string& path) {
+  const v1::LandmarkFile& file = files[index];
+  const std::string field = absl::StrCat(path, "[", index, "]");
   if (file.name().size() > kLongestFileName) {
     return absl::InvalidArgumentError(
         absl::StrCat(field, ".name: has ", file.name().size(), " characters, more than ", kLongestFileName));
@@ -36,15 +40,15 @@ absl::StatusOr<Landmarks> ReadFile(const v1::FitMotionRequest& request, int inde
   return ParseLandmarks(file.name().empty() ? field : file.name(), file.content());
 }
 
-absl::StatusOr<Landmarks> ReadFiles(const v1::FitMotionRequest& request) {
-  if (request.landmarks_size() > 2) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("landmarks: ", request.landmarks_size(),
-                     " files: give one of pairs, or one of end exhale and one of end inhale"));
+absl::StatusOr<Landmarks> ReadFiles(const LandmarkFiles& files, const std::string& path) {
+  if (files.empty()) return absl::InvalidArgumentError(absl::StrCat(path, ": is required"));
+  if (files.size() > 2) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        path, ": ", files.size(), " files: give one of pairs, or one of end exhale and one of end inhale"));
   }
-  absl::StatusOr<Landmarks> first = ReadFile(request, 0);
-  if (!first.ok() || request.landmarks_size() == 1) return first;
-  absl::StatusOr<Landmarks> second = ReadFile(request, 1);
+  absl::StatusOr<Landmarks> first = ReadFile(files, 0, path);
+  if (!first.ok() || files.size() == 1) return first;
+  absl::StatusOr<Landmarks> second = ReadFile(files, 1, path);
   if (!second.ok()) return second;
   return PairLandmarks(*first, *second);
 }
@@ -57,10 +61,13 @@ std::string SourceOf(const v1::FitMotionRequest& request) {
   return names.empty() ? "landmarks" : absl::StrJoin(names, " and ");
 }
 
+absl::Status CheckModes(int modes, bool given) {
+  if (!given || modes == 8 || modes == 12) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("modes: ", modes, " is neither 8 nor 12"));
+}
+
 absl::Status CheckOptions(const v1::FitMotionRequest& request) {
-  if (request.has_modes() && request.modes() != 8 && request.modes() != 12) {
-    return absl::InvalidArgumentError(absl::StrCat("modes: ", request.modes(), " is neither 8 nor 12"));
-  }
+  if (absl::Status status = CheckModes(request.modes(), request.has_modes()); !status.ok()) return status;
   if (!IsSceneName(request.scene_name())) {
     return absl::InvalidArgumentError(
         absl::StrFormat("scene_name: give at most %d characters of a-z, 0-9 and \"-\"", kLongestSceneName));
@@ -180,7 +187,7 @@ absl::StatusOr<RequestedFit> ReadFitRequest(const v1::FitMotionRequest& request)
     if (!evidence.ok()) return evidence.status();
     requested.evidence = *std::move(evidence);
   } else {
-    absl::StatusOr<Landmarks> landmarks = ReadFiles(request);
+    absl::StatusOr<Landmarks> landmarks = ReadFiles(request.landmarks(), "landmarks");
     if (!landmarks.ok()) return landmarks.status();
     if (absl::Status status = CheckPairCount(*landmarks); !status.ok()) return status;
     if (landmarks->phase.size() > 0) {
@@ -197,6 +204,38 @@ absl::StatusOr<RequestedFit> ReadFitRequest(const v1::FitMotionRequest& request)
   requested.source = request.measured_size() > 0 ? MeasuredNames(request) : SourceOf(request);
   requested.show_landmarks = request.show_landmarks();
   return requested;
+}
+
+absl::StatusOr<RequestedStudy> ReadStudyRequest(const v1::StudyMotionRequest& request) {
+  if (absl::Status status = CheckModes(request.modes(), request.has_modes()); !status.ok()) return status;
+  if (request.cases().empty() || request.cases_size() > kMostCases) {
+    return absl::InvalidArgumentError(absl::StrCat("cases: give 1 to ", kMostCases, " people"));
+  }
+  RequestedStudy study;
+  std::set<std::string> names;
+  Eigen::Index pairs = 0;
+  for (int i = 0; i < request.cases_size(); ++i) {
+    const v1::MotionCase& each = request.cases(i);
+    const std::string path = absl::StrCat("cases[", i, "]");
+    if (each.name().empty() || each.name().size() > kLongestSceneName || !IsPrintable(each.name())) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(path, ".name: give 1 to ", kLongestSceneName, " printable characters of ASCII"));
+    }
+    if (!names.insert(each.name()).second) {
+      return absl::InvalidArgumentError(absl::StrCat(path, ".name: another case has the name ", each.name()));
+    }
+    absl::StatusOr<Landmarks> landmarks = ReadFiles(each.landmarks(), absl::StrCat(path, ".landmarks"));
+    if (!landmarks.ok()) return landmarks.status();
+    pairs += landmarks->size();
+    if (pairs > kMostStudyPairs) {
+      return absl::InvalidArgumentError(absl::StrCat("cases: more than ", kMostStudyPairs,
+                                                     " pairs together: send fewer people or every second pair"));
+    }
+    study.cases.push_back({each.name(), *std::move(landmarks)});
+  }
+  if (request.has_modes()) study.options.numbers = request.modes();
+  if (request.has_split()) study.options.split = static_cast<std::uint64_t>(request.split());
+  return study;
 }
 
 absl::StatusOr<v1::MotionFitResult> FitRequested(const RequestedFit& requested, const SceneLungs& lungs,

@@ -10,6 +10,7 @@
 #include "phrenic/v1/fit.pb.h"
 #include "server/fit/evidence.h"
 #include "server/fit/motion_fit.h"
+#include "server/fit/motion_study.h"
 #include "server/fit/scene_lungs.h"
 
 namespace phrenic::fit {
@@ -36,6 +37,17 @@ absl::StatusOr<RequestedFit> ReadFitRequest(const v1::FitMotionRequest& request)
 // Fits. The errors of FitMotion or FitJointly.
 absl::StatusOr<v1::MotionFitResult> FitRequested(const RequestedFit& requested, const SceneLungs& lungs,
                                                  const FitProgress& progress);
+
+inline constexpr int kMostCases = 64;                    // people of one study
+inline constexpr Eigen::Index kMostStudyPairs = 50'000;  // of all of them
+
+struct RequestedStudy {
+  std::vector<StudyCase> cases;
+  FitOptions options;
+};
+
+// Parses the landmarks of each case, as ReadFitRequest does, and checks names and options.
+absl::StatusOr<RequestedStudy> ReadStudyRequest(const v1::StudyMotionRequest& request);
 
 }  // namespace phrenic::fit
 

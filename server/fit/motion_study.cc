@@ -50,6 +50,11 @@ bool IsLandmarkFile(const std::string& name) {
 absl::StatusOr<MotionStudy> StudyMotion(const LungTemplates& templates, const std::vector<StudyCase>& cases,
                                         const FitOptions& options, const FitProgress& progress, const KeptFits& kept) {
   if (cases.empty()) return absl::InvalidArgumentError("a study of motion needs one case at least");
+  for (const StudyCase& each : cases) {
+    if (each.landmarks.phase.size() == 0) continue;
+    return Named(each.name, absl::InvalidArgumentError(
+                                "has a column phase: a study is of end exhale and end inhale; leave others out"));
+  }
   MotionStudy study = {options.numbers, {}, {}};
   for (size_t i = 0; i < cases.size(); ++i) {
     const FitProgress whole = [&](double done, std::string_view stage) {

@@ -3,6 +3,7 @@
 #ifndef PHRENIC_SERVER_FIT_STRUCTURES_H_
 #define PHRENIC_SERVER_FIT_STRUCTURES_H_
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,23 @@ absl::StatusOr<Points> PointsInLungs(const std::vector<PersonStructure>& structu
 // Returns the distances of the registered lungs from the person's, and of their bases from the diaphragm.
 std::vector<StructureResidual> CompareStructures(const LungTemplates& templates, const RegisteredLungs& registered,
                                                  const std::vector<PersonStructure>& structures);
+
+// The registered lungs, bent onto a person's surfaces by the smallest deformation of an elastic body (lung_tissue.h)
+// whose surface springs pull to the nearest of the person's, at most kMostBend. In up to ten rounds the springs become
+// stiffer, to kBendStiffness times the modulus per area at most, as long as nothing folds.
+inline constexpr double kMostBend = 0.03;      // [m]
+inline constexpr double kBendStiffness = 300;  // [1/m]
+struct BentLungs {
+  std::array<Mesh, 2> surfaces;       // by Side
+  std::array<double, 2> most = {};    // that a vertex was bent by [m]
+  std::array<double, 2> volume = {};  // least over that before, of a small part of a lung [1]
+};
+
+// The errors of LungTissue::Make. Requires: both lungs among the structures (PointsInLungs).
+absl::StatusOr<BentLungs> BendLungs(const LungTemplates& templates, const RegisteredLungs& registered,
+                                    const std::vector<PersonStructure>& structures);
+// As CompareStructures, of bent lungs.
+std::vector<StructureResidual> CompareStructures(const BentLungs& bent, const std::vector<PersonStructure>& structures);
 
 }  // namespace phrenic::fit
 

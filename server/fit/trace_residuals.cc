@@ -35,14 +35,20 @@ class BreathShape {
 class TraceResiduals final : public Residuals {
  public:
   TraceResiduals(KindOfData kind, const TracedBreaths& breaths, Eigen::VectorXd depth, TimeCourse at)
-      : Residuals(std::move(kind)), breaths_(breaths), depth_(std::move(depth)), at_(at) {
+      : Residuals(std::move(kind)),
+        breaths_(breaths),
+        depth_(std::move(depth)),
+        at_(at),
+        fitting_(SamplesOf(breaths, false)),
+        held_out_(SamplesOf(breaths, true)) {
     for (const std::string& doubt : breaths.doubts) Doubt(doubt);
   }
 
   Rows At(const Eigen::VectorXd& numbers, Part part) const override {
-    if (part == Part::kHeldOut) return {};
-    const Eigen::Index count = breaths_.phase.size();
-    const double per_breath = static_cast<double>(count) / static_cast<double>(breaths_.lengths.size());
+    const std::vector<int>& own = part == Part::kFitting ? fitting_ : held_out_;
+    const auto count = static_cast<Eigen::Index>(own.size());
+    const double of_breaths = std::max(1.0, static_cast<double>(BreathsOf(breaths_, part == Part::kHeldOut).size()));
+    const double per_breath = static_cast<double>(count) / of_breaths;
     const double alike = std::max(1.0, per_breath / kDataPerBreath), sd = this->kind().sd;
     Rows rows = {Eigen::VectorXd(count), Eigen::VectorXd::Constant(count, 1 / (sd * sd * alike)),
                  Eigen::MatrixXd::Zero(count, numbers.size())};
@@ -51,9 +57,10 @@ class TraceResiduals final : public Residuals {
     const BreathShape shape(in, pause), more(in + kShareStep, pause), less(in - kShareStep, pause),
         longer(in, pause + kShareStep), shorter(in, pause - kShareStep);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const double phase = breaths_.phase[i] + numbers[at_.start];
+      const int sample = own[static_cast<size_t>(i)];
+      const double phase = breaths_.phase[sample] + numbers[at_.start];
       const BreathSignal signal = shape.At(phase);
-      rows.residual[i] = breaths_.value[i] - numbers[at_.offset] - depth * signal.value;
+      rows.residual[i] = breaths_.value[sample] - numbers[at_.offset] - depth * signal.value;
       rows.slope.row(i).head(depth_.size()) = signal.value * depth_.transpose();
       rows.slope(i, at_.offset) = 1;
       rows.slope(i, at_.start) = depth * signal.slope;
@@ -74,24 +81,28 @@ class TraceResiduals final : public Residuals {
   const TracedBreaths breaths_;
   const Eigen::VectorXd depth_;
   const TimeCourse at_;
+  const std::vector<int> fitting_, held_out_;  // samples
 };
 
 class LengthResiduals final : public Residuals {
  public:
-  LengthResiduals(KindOfData kind, Eigen::VectorXd lengths, int at)
-      : Residuals(std::move(kind)), lengths_(std::move(lengths)), at_(at) {}
+  LengthResiduals(KindOfData kind, const TracedBreaths& breaths, int at)
+      : Residuals(std::move(kind)),
+        fitting_(breaths.lengths(BreathsOf(breaths, false))),
+        held_out_(breaths.lengths(BreathsOf(breaths, true))),
+        at_(at) {}
 
   Rows At(const Eigen::VectorXd& numbers, Part part) const override {
-    if (part == Part::kHeldOut) return {};
+    const Eigen::VectorXd& lengths = part == Part::kFitting ? fitting_ : held_out_;
     const double sd = kind().sd;
-    Rows rows = {lengths_.array() - numbers[at_], Eigen::VectorXd::Constant(lengths_.size(), 1 / (sd * sd)),
-                 Eigen::MatrixXd::Zero(lengths_.size(), numbers.size())};
+    Rows rows = {lengths.array() - numbers[at_], Eigen::VectorXd::Constant(lengths.size(), 1 / (sd * sd)),
+                 Eigen::MatrixXd::Zero(lengths.size(), numbers.size())};
     rows.slope.col(at_).setOnes();
     return rows;
   }
 
  private:
-  const Eigen::VectorXd lengths_;
+  const Eigen::VectorXd fitting_, held_out_;  // lengths
   const int at_;
 };
 
@@ -123,7 +134,7 @@ void AddTrace(const KindOfData& kind, const TracedBreaths& breaths, const Eigen:
   all.push_back(std::make_unique<TraceResiduals>(kind, breaths, depth, at));
   const int length = FindOrAdd({kBreathLength, "of one breath, in and out", "s", 1, 4, 1.5, 0.5, 30}, space);
   const KindOfData lengths = {"breath lengths", kind.source, "s", 1, kLengthVariation * breaths.lengths.mean(), 1};
-  all.push_back(std::make_unique<LengthResiduals>(lengths, breaths.lengths, length));
+  all.push_back(std::make_unique<LengthResiduals>(lengths, breaths, length));
 }
 
 }  // namespace phrenic::fit

@@ -1,7 +1,7 @@
 // Recordings over time against the model: the lungs' volume V s(phase), or the descent D s(phase) of the middle of a
 // base, with V and D linear in the amplitudes and s the raised cosine of breath_signal.h, whose inspiratory share,
 // pause and beginning are fitted, and an offset. Neighbouring samples are alike: a quarter of a breath counts as one
-// datum. The lengths of the breaths are data of their own.
+// datum. The lengths of the breaths are data of their own. Every second breath is held out (SamplesOf).
 #ifndef PHRENIC_SERVER_FIT_TRACE_RESIDUALS_H_
 #define PHRENIC_SERVER_FIT_TRACE_RESIDUALS_H_
 

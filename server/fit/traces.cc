@@ -1,6 +1,7 @@
 #include "server/fit/traces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
@@ -177,6 +178,7 @@ Troughs FindTroughs(const RawTrace& raw, const std::vector<double>& crossings) {
 Eigen::Index AddSamples(const RawTrace& raw, const std::vector<double>& crossings, const Troughs& troughs, double si,
                         TracedBreaths& breaths) {
   std::vector<double> phase, value;
+  std::vector<int> breath;
   size_t k = 0;
   for (size_t i = 0; i < raw.time.size(); ++i) {
     const double t = raw.time[i];
@@ -184,13 +186,16 @@ Eigen::Index AddSamples(const RawTrace& raw, const std::vector<double>& crossing
     while (t >= crossings[k + 1]) ++k;
     phase.push_back((t - crossings[k]) / (crossings[k + 1] - crossings[k]));
     value.push_back(si * (raw.value[i] - troughs.At(t)));
+    breath.push_back(static_cast<int>(k));
   }
   const auto count = static_cast<Eigen::Index>(phase.size()), used = std::min(count, kMostUsed);
   breaths.phase.resize(used);
   breaths.value.resize(used);
+  breaths.breath.resize(used);
   for (Eigen::Index i = 0; i < used; ++i) {
     breaths.phase[i] = phase[static_cast<size_t>(i * count / used)];
     breaths.value[i] = value[static_cast<size_t>(i * count / used)];
+    breaths.breath[i] = breath[static_cast<size_t>(i * count / used)];
   }
   return count;
 }
@@ -221,6 +226,25 @@ absl::Status CheckBreaths(Traced traced, std::string_view name, TracedBreaths& b
 }
 
 }  // namespace
+
+std::vector<int> SamplesOf(const TracedBreaths& breaths, bool held_out) {
+  constexpr int kParts = 16;  // of a single breath
+  const int count = static_cast<int>(breaths.phase.size());
+  const bool single = breaths.lengths.size() < 2;
+  std::array<std::vector<int>, 2> samples;
+  for (int i = 0; i < count; ++i) {
+    const int block = single ? kParts * i / count : breaths.breath[i];
+    samples[block % 2].push_back(i);
+  }
+  if (samples[0].empty()) std::swap(samples[0], samples[1]);
+  return samples[held_out ? 1 : 0];
+}
+
+std::vector<int> BreathsOf(const TracedBreaths& breaths, bool held_out) {
+  std::vector<int> of;
+  for (int k = held_out ? 1 : 0; k < static_cast<int>(breaths.lengths.size()); k += 2) of.push_back(k);
+  return of;
+}
 
 absl::StatusOr<TracedBreaths> ParseTrace(Traced traced, std::string_view name, std::string_view bytes) {
   const absl::StatusOr<RawTrace> raw = ReadRaw(traced, name, bytes);

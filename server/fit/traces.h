@@ -22,9 +22,16 @@ enum class Traced { kVolume, kDisplacement };
 struct TracedBreaths {
   Eigen::VectorXd phase;    // of each sample, 0..1 from the breath's beginning
   Eigen::VectorXd value;    // above end expiration [m^3] or [m]
+  Eigen::VectorXi breath;   // of each sample: index in lengths
   Eigen::VectorXd lengths;  // of each breath [s]
   std::vector<std::string> doubts;
 };
+
+// Returns the indices of the samples that are fitted, or of those that are held out: every second breath, from the
+// second on; of a single breath every second sixteenth, which tells only that the shape is smooth.
+std::vector<int> SamplesOf(const TracedBreaths& breaths, bool held_out);
+// The same of the breaths themselves: of a single one nothing is held out.
+std::vector<int> BreathsOf(const TracedBreaths& breaths, bool held_out);
 
 inline constexpr int kMostTraceSamples = 500'000;
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/motions/lung_modes.h"
 #include "server/physiology/lung_breath.h"
 #include "server/physiology/parts.h"
 
@@ -31,16 +32,28 @@ absl::Status LiveLungs::Add(int body, const StopCheck& stop) {
   if (stop.Stopped()) return stop.status();
   absl::StatusOr<LungResponses> responses = LungResponses::Make(*tissue, surroundings.neighbours(), stop);
   if (!responses.ok()) return responses.status();
-  const RegionWeights weights = WeightsOfRegions(tissue->grid(), tissue->box());
-  const Eigen::MatrixXd& shapes = responses->shapes();
-  Eigen::MatrixXd caudal = weights.caudal * shapes, gained = weights.gained * shapes;
-  const Eigen::RowVectorXd volume = weights.volume * shapes;
-  lungs_.push_back(
-      {body, lung.name, *std::move(responses), std::move(surroundings), std::move(caudal), std::move(gained), volume});
+  Add(body, tissue->box(), *std::move(responses), std::move(surroundings));
   return absl::OkStatus();
 }
 
+void LiveLungs::Add(int body, const Eigen::AlignedBox3d& box, LungResponses responses,
+                    std::optional<LungSurroundings> surroundings) {
+  const RegionWeights weights = WeightsOfRegions(responses.grid(), box);
+  const Eigen::MatrixXd& shapes = responses.shapes();
+  Eigen::MatrixXd caudal = weights.caudal * shapes, gained = weights.gained * shapes;
+  const Eigen::RowVectorXd volume = weights.volume * shapes;
+  lungs_.push_back({body, model_.bodies[static_cast<size_t>(body)].name, std::move(responses), std::move(surroundings),
+                    std::move(caudal), std::move(gained), volume});
+}
+
 absl::StatusOr<LiveLungs> LiveLungs::Make(const Model& model, const StopCheck& stop) {
+  if (const LungModes* modes = LungModes::Find(model)) {
+    LiveLungs lungs(model, -1, -1);
+    for (const LungModes::Inside& lung : modes->insides()) {
+      lungs.Add(lung.body, lung.box, {lung.grid, lung.shapes}, std::nullopt);
+    }
+    return lungs;
+  }
   const absl::StatusOr<Parts> parts = FindParts(model);
   if (!parts.ok() || parts->lungs.empty() || parts->muscle < 0 || parts->wall < 0) {
     return absl::FailedPreconditionError(
@@ -55,13 +68,19 @@ absl::StatusOr<LiveLungs> LiveLungs::Make(const Model& model, const StopCheck& s
 }
 
 std::vector<LungMoment> LiveLungs::At(const State& state, const v1::Parameters& parameters) const {
-  const Points sheet = Placed(model_, state, sheet_), wall = Placed(model_, state, wall_);
+  const bool by_modes = sheet_ < 0;
+  const Points sheet = by_modes ? Points(3, 0) : Placed(model_, state, sheet_);
+  const Points wall = by_modes ? Points(3, 0) : Placed(model_, state, wall_);
   std::vector<LungMoment> moments;
   for (const Lung& lung : lungs_) {
-    const double follows =
-        FollowsSurroundings(model_.bodies[static_cast<size_t>(lung.body)].anatomy.side(), parameters);
     LungMoment& moment = moments.emplace_back();
-    moment.amplitudes = follows * lung.responses.Amplitudes(lung.surroundings.Displacement(state, sheet, wall));
+    if (lung.surroundings) {
+      const double follows =
+          FollowsSurroundings(model_.bodies[static_cast<size_t>(lung.body)].anatomy.side(), parameters);
+      moment.amplitudes = follows * lung.responses.Amplitudes(lung.surroundings->Displacement(state, sheet, wall));
+    } else {
+      moment.amplitudes = LungModes::AmplitudesAt(MakeEvalContext(model_, parameters, state, {}));
+    }
     moment.volume = lung.volume * moment.amplitudes;
     const Eigen::VectorXd caudal = lung.caudal * moment.amplitudes, gained = lung.gained * moment.amplitudes;
     for (size_t r = 0; r < kLungRegions; ++r) {

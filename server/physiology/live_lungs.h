@@ -35,14 +35,15 @@ class LiveLungs {
     int body;  // in Model::bodies
     std::string name;
     LungResponses responses;
-    LungSurroundings surroundings;
+    std::optional<LungSurroundings> surroundings;  // none: LungModes moves the lung
     // Of its shapes: RegionWeights times LungResponses::shapes().
     Eigen::MatrixXd caudal, gained;
     Eigen::RowVectorXd volume;
   };
 
-  // Factorises and reduces both lungs: 1 to 2 s. FAILED_PRECONDITION if the scene lacks lungs, a simulated diaphragm or
-  // an inner wall of the cage; as LungTissue::Make; the status of `stop`.
+  // Factorises and reduces both lungs: 1 to 2 s. Of lungs that LungModes moves (persons' scenes), the tissue is exactly
+  // theirs, at once. FAILED_PRECONDITION if the scene has neither these nor lungs, a simulated diaphragm and an inner
+  // wall of the cage; as LungTissue::Make; the status of `stop`.
   static absl::StatusOr<LiveLungs> Make(const Model& model, const StopCheck& stop = {});
 
   const std::vector<Lung>& lungs() const { return lungs_; }
@@ -54,9 +55,11 @@ class LiveLungs {
  private:
   LiveLungs(const Model& model, int sheet, int wall) : model_(model), sheet_(sheet), wall_(wall) {}
   absl::Status Add(int body, const StopCheck& stop);
+  void Add(int body, const Eigen::AlignedBox3d& box, LungResponses responses,
+           std::optional<LungSurroundings> surroundings);
 
   const Model& model_;
-  int sheet_, wall_;  // bodies
+  int sheet_, wall_;  // bodies; -1: LungModes moves the lungs
   std::vector<Lung> lungs_;
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/mechanics/motions/lung_modes.h"
+
 namespace phrenic::physiology {
 namespace {
 
@@ -98,13 +100,42 @@ std::vector<LungMotion> BreathingLungs::Motions(const Recording& breath) const {
 }
 
 std::vector<LungReading> BreathingLungs::Readings(const std::vector<LungMotion>& motions) const {
+  std::vector<LungReading> readings = ReadingsOf(motions);
+  for (size_t i = 0; i < readings.size(); ++i) readings[i].lung = lungs_[i].name;
+  return readings;
+}
+
+std::vector<LungReading> ReadingsOf(const std::vector<LungMotion>& motions) {
   std::vector<LungReading> readings;
-  for (size_t i = 0; i < motions.size(); ++i) {
-    const absl::StatusOr<LungField> field = SampleLungs(std::span(&motions[i], 1), kSample);
-    readings.push_back(field.ok() ? ReadLung(motions[i], *field) : LungReading());
-    readings.back().lung = lungs_[i].name;
+  for (const LungMotion& motion : motions) {
+    const absl::StatusOr<LungField> field = SampleLungs(std::span(&motion, 1), kSample);
+    readings.push_back(field.ok() ? ReadLung(motion, *field) : LungReading());
   }
   return readings;
+}
+
+absl::StatusOr<std::vector<LungMotion>> MotionsOfModes(const Model& model, const v1::Parameters& parameters) {
+  std::vector<LungMotion> motions;
+  const LungModes* modes = LungModes::Find(model);
+  if (modes == nullptr) return motions;
+  const State state = model.InitialState();
+  const auto amplitudes_at = [&](double phase) {
+    return LungModes::AmplitudesAt(MakeEvalContext(model, parameters, state, state.time, phase, {}));
+  };
+  constexpr int kSamples = 400;
+  Eigen::Vector<double, kModeParameters> least = amplitudes_at(0), most = least;
+  for (int i = 1; i < kSamples; ++i) {
+    const Eigen::Vector<double, kModeParameters> now = amplitudes_at(static_cast<double>(i) / kSamples);
+    if (now.squaredNorm() < least.squaredNorm()) least = now;
+    if (now.squaredNorm() > most.squaredNorm()) most = now;
+  }
+  for (const LungModes::Inside& lung : modes->insides()) {
+    absl::StatusOr<LungTissue> tissue = LungTissue::Make(model.bodies[static_cast<size_t>(lung.body)].mesh);
+    if (!tissue.ok()) return tissue.status();
+    const Eigen::VectorXd nodes = lung.shapes * (most - least);
+    motions.push_back({*std::move(tissue), nodes.reshaped(3, lung.grid.nodes().cols())});
+  }
+  return motions;
 }
 
 LoweredPoints LoweredInBreath(const Recording& breath) {

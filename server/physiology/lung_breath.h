@@ -53,6 +53,12 @@ class BreathingLungs {
   std::vector<Lung> lungs_;
 };
 
+// Returns the motion of each lung that LungModes moves, from the end of expiration to that of inspiration. Empty for a
+// scene without that motion. As LungTissue::Make.
+absl::StatusOr<std::vector<LungMotion>> MotionsOfModes(const Model& model, const v1::Parameters& parameters);
+// Returns what each lung does, without its name.
+std::vector<LungReading> ReadingsOf(const std::vector<LungMotion>& motions);
+
 // Returns points inside the lungs' tissue 6 mm apart, and how far they move down in the breath, as landmarks of CT do;
 // points of the seen surfaces where the scene has no tissue (BreathingLungs::Make), empty without lungs.
 LoweredPoints LoweredInBreath(const Recording& breath);

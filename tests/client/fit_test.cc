@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <numbers>
 
+#include "absl/strings/str_cat.h"
 #include "tests/client/programs.h"
 
 namespace phrenic::client {
@@ -164,6 +166,45 @@ TEST(Fit, OfSeveralKindsTellsHowWellEachIsMet) {
   EXPECT_THAT(ReadAll(scene), HasSubstr("breath_length: 4"));
 }
 
+// Breaths of 2 s and 0.5 l, at 25 samples a second.
+std::string Spirogram() {
+  std::string text = "time_s,volume_l\n";
+  for (int i = 0; i < 400; ++i) {
+    absl::StrAppend(&text, 0.04 * i, ",", 0.25 - 0.25 * std::cos(std::numbers::pi * 0.04 * i), "\n");
+  }
+  return text;
+}
+
+TEST(Fit, FindsActivationsWhoseBreathIsThatOfARecording) {
+  const std::string volume = WriteScratch("spiro.csv", Spirogram()), scene = Scratch("breather.textproto");
+  const Outcome fit = Phrenic({"fit", "thorax", "--resolution", "20", "--volume", volume, "--parameters",
+                               "diaphragm_activation:0.01:0.3", "--out", scene, "-o", "json"});
+  ASSERT_EQ(fit.code, 0) << fit.err;
+  const auto json = fit.json();
+  EXPECT_EQ(json["fitted"][0]["name"], "diaphragm_activation");
+  EXPECT_TRUE(json["fitted"][0]["determined"]);
+  EXPECT_EQ(json["derived"][0]["name"], "tidal-volume");
+  EXPECT_NEAR(json["derived"][0]["value"].get<double>(), 0.5, 0.07);
+  EXPECT_LT(json["kinds"][0]["held_out_rms"], json["kinds"][0]["held_out_rms_still"]);
+  EXPECT_THAT(json["preset"].get<std::string>(), HasSubstr("breath_length: 2 diaphragm_activation:"));
+  const Outcome run = Phrenic({"run", scene, "--preset", "fitted", "--seconds", "0.2", "-o", "json"});
+  EXPECT_EQ(run.code, 0) << run.err;
+}
+
+TEST(Fit, OfParametersSaysWhatIsMissing) {
+  const std::string volume = WriteScratch("spiro.csv", Spirogram());
+  const auto fit = [&](const std::string& parameters, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"fit", "thorax", "--parameters", parameters};
+    words.insert(words.end(), more.begin(), more.end());
+    return Phrenic(words);
+  };
+  EXPECT_THAT(fit("diaphragm_activation", {}).err, HasSubstr("--parameters needs data"));
+  EXPECT_THAT(fit("diafragm", {"--volume", volume}).err, HasSubstr("diaphragm_activation"));
+  EXPECT_THAT(fit("diaphragm_activation", {"--volume", volume, "--descent", "12"}).err, HasSubstr("leave --descent"));
+  const Outcome lungs = Phrenic({"fit", "person-1", "--parameters", "lung_pump", "--preset", "", "--volume", volume});
+  EXPECT_NE(lungs.code, 0);
+}
+
 TEST(Register, ToSurfacesTellsHowFarTheyAre) {
   const std::string points = WriteScratch("exhale.csv", EggPerson(500)), lungs = Scratch("lungs");
   ASSERT_EQ(Phrenic({"register", "thorax", "--resolution", "12", "--exhale", points, "--out", lungs}).code, 0);
@@ -173,6 +214,7 @@ TEST(Register, ToSurfacesTellsHowFarTheyAre) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   ASSERT_EQ(outcome.json()["structures"].size(), 2u);
   EXPECT_LT(outcome.json()["structures"][0]["mean_mm"], 4);
+  EXPECT_LE(outcome.json()["structures"][0]["bent_mean_mm"], outcome.json()["structures"][0]["mean_mm"]);
   const Outcome swapped = Phrenic({"register", "thorax", "--resolution", "12", "--surface", "lung-right=" + left,
                                    "--surface", "lung-left=" + right});
   EXPECT_EQ(swapped.code, 1);

@@ -232,5 +232,36 @@ TEST(SceneLungs, AreClosedAndOfThisSize) {
   EXPECT_THAT(fault(TwoLungs(), large), HasSubstr("more than 0.6 m: check its unit"));
 }
 
+v1::StudyMotionRequest StudyOf(const std::vector<std::pair<std::string, std::string>>& people) {
+  v1::StudyMotionRequest request;
+  request.mutable_source()->set_name("thorax");
+  for (const auto& [name, content] : people) {
+    v1::MotionCase& each = *request.add_cases();
+    each.set_name(name);
+    each.add_landmarks()->set_content(content);
+  }
+  return request;
+}
+
+TEST(StudyRequest, IsRefusedByFieldAndLine) {
+  const auto refusal = [](const v1::StudyMotionRequest& request) {
+    return std::string(ReadStudyRequest(request).status().message());
+  };
+  const std::string pairs = PairLines(4);
+  const auto read = ReadStudyRequest(StudyOf({{"anna", pairs}, {"ben", pairs}}));
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_EQ(read->cases[1].name, "ben");
+  EXPECT_EQ(read->cases[1].landmarks.size(), 4);
+  EXPECT_THAT(refusal(StudyOf({})), HasSubstr("cases: give 1 to 64"));
+  EXPECT_THAT(refusal(StudyOf({{"anna", pairs}, {"anna", pairs}})), HasSubstr("cases[1].name: another case"));
+  EXPECT_THAT(refusal(StudyOf({{std::string(65, 'a'), pairs}})), HasSubstr("cases[0].name"));
+  EXPECT_THAT(refusal(StudyOf({{"anna", std::string(kPairsHeader) + "1,2,x,4,5,6\n"}})),
+              HasSubstr("cases[0].landmarks[0]:2:"));
+  EXPECT_THAT(refusal(StudyOf({{"a", PairLines(30000)}, {"b", PairLines(30000)}})), HasSubstr("50000 pairs together"));
+  v1::StudyMotionRequest nine = StudyOf({{"anna", pairs}});
+  nine.set_modes(9);
+  EXPECT_THAT(refusal(nine), HasSubstr("modes"));
+}
+
 }  // namespace
 }  // namespace phrenic::fit

@@ -43,6 +43,40 @@ TEST(Structures, OfAScaledTemplateGiveItsScale) {
   }
 }
 
+// A template with a hollow in its side and a twist is no scaled template; bent, it is met to 0.6 of that or less (0.43
+// and 0.53), without a fold, and a template that fits needs no bend.
+TEST(Structures, AreMetByBendingWhereScalingCannot) {
+  auto structures = ScaledLungs({1.05, 0.95, 1.1}, {0.02, -0.01, 0.3});
+  for (PersonStructure& each : structures) {
+    Points& x = each.surface.vertices;
+    const Eigen::Vector3d middle = x.rowwise().mean();
+    for (auto vertex : x.colwise()) {
+      const Eigen::Vector3d at = vertex - middle;
+      vertex.x() += 0.012 * std::cos(at.z() / 0.06) + 0.5 * at.z() * at.y();
+      vertex.y() += 0.01 * std::sin(at.z() / 0.05);
+    }
+  }
+  const auto registered = RegisterLungs(GeneratedLungs(), *PointsInLungs(structures));
+  ASSERT_TRUE(registered.ok()) << registered.status();
+  const auto scaled = CompareStructures(GeneratedLungs(), *registered, structures);
+  const auto bent = BendLungs(GeneratedLungs(), *registered, structures);
+  ASSERT_TRUE(bent.ok()) << bent.status();
+  const auto after = CompareStructures(*bent, structures);
+  for (size_t i = 0; i < 2; ++i) {
+    std::printf("%s: scaled %.2f mm, bent %.2f, p95 %.2f; by %.1f mm, volume %.2f of before at least\n",
+                scaled[i].name.c_str(), 1e3 * scaled[i].mean, 1e3 * after[i].mean, 1e3 * after[i].p95,
+                1e3 * bent->most[i], bent->volume[i]);
+    EXPECT_LT(after[i].mean, 0.6 * scaled[i].mean);
+    EXPECT_LT(after[i].p95, 0.6 * scaled[i].p95);
+    EXPECT_LE(bent->most[i], 1.05 * kMostBend);
+    EXPECT_GT(bent->volume[i], 0.1);
+  }
+  RegisteredLungs same;
+  const auto unbent = BendLungs(GeneratedLungs(), same, ScaledLungs({1, 1, 1}, {0, 0, 0}));
+  ASSERT_TRUE(unbent.ok());
+  EXPECT_LT(std::max(unbent->most[0], unbent->most[1]), 1e-6);
+}
+
 TEST(Structures, OfADiaphragmJudgeTheBasesAlone) {
   auto structures = ScaledLungs({1, 1, 1}, {0, 0, 0});
   RegisteredLungs same;

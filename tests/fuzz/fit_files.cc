@@ -24,6 +24,10 @@ void CheckTrace(const phrenic::fit::TracedBreaths& breaths) {
   MustHold(breaths.phase.size() > 0 && breaths.phase.size() == breaths.value.size());
   MustHold(breaths.value.allFinite() && breaths.lengths.minCoeff() > 0);
   MustHold(breaths.phase.minCoeff() >= 0 && breaths.phase.maxCoeff() <= 1);
+  MustHold(breaths.breath.size() == breaths.phase.size() && breaths.breath.minCoeff() >= 0);
+  MustHold(breaths.breath.maxCoeff() < breaths.lengths.size());
+  const auto samples = SamplesOf(breaths, false).size() + SamplesOf(breaths, true).size();
+  MustHold(samples == static_cast<std::size_t>(breaths.phase.size()) && !SamplesOf(breaths, false).empty());
 }
 
 void CheckMarkers(const phrenic::fit::Markers& markers) {

@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "server/mechanics/step/step.h"
 #include "server/mesh/topology.h"
 #include "server/physiology/lung_breath.h"
 #include "tests/physiology/generated_thorax.h"
@@ -157,6 +158,44 @@ TEST_F(LiveLungsTest, IsReadInsideTheLungsAlone) {
     EXPECT_LT(read->tissue.displacement.z(), 0);
   }
   EXPECT_FALSE(lungs_->Read(moments, {0, 0, -1}).has_value());
+}
+
+// Boundary modes move a person's lungs: the tissue at a vertex is where the vertex is, and region means are those of
+// the field that `phrenic lungs` writes.
+TEST(LiveLungs, OfAPersonAreTheirSurfacesTissue) {
+  const auto model = CompileShipped("person-1", 0);
+  const auto lungs = LiveLungs::Make(*model);
+  ASSERT_TRUE(lungs.ok()) << lungs.status();
+  State state = model->InitialState();
+  Workspace work = model->MakeWorkspace();
+  while (state.time < model->parameters.breath_length() / 2) {
+    ASSERT_TRUE(Step(*model, model->parameters, model->parameters.time_step(), state, work).ok());
+  }
+  const std::vector<LungMoment> moments = lungs->At(state, model->parameters);
+  ASSERT_EQ(moments.size(), 2);
+  for (size_t i = 0; i < 2; ++i) {
+    const BodyModel& body = model->bodies[static_cast<size_t>(lungs->lungs()[i].body)];
+    for (Eigen::Index v = 0; v < body.mesh.vertices.cols(); ++v) {
+      const Eigen::Vector3d rest = body.mesh.vertices.col(v);
+      const Eigen::Vector3d moved = state.x.col(body.first_vertex + v) - rest;
+      ASSERT_LT((lungs->lungs()[i].responses.At(moments[i].amplitudes, rest).displacement - moved).norm(), 1e-9);
+    }
+    const double swept =
+        SignedVolume(state.x.middleCols(body.first_vertex, body.mesh.vertices.cols()), body.mesh.triangles) -
+        SignedVolume(body.mesh.vertices, body.mesh.triangles);
+    EXPECT_GT(swept, 5e-5) << body.name;
+    EXPECT_NEAR(moments[i].volume / swept, 1, 0.1) << body.name;
+  }
+  const auto motions = physiology::MotionsOfModes(*model, model->parameters);
+  ASSERT_TRUE(motions.ok()) << motions.status();
+  const std::vector<physiology::LungReading> readings = physiology::ReadingsOf(*motions);
+  for (size_t i = 0; i < 2; ++i) {
+    for (const int region : {physiology::kLungBase, physiology::kLungMiddle, physiology::kLungApex}) {
+      EXPECT_GT(readings[i].caudal[region], 0) << i << " " << region;
+    }
+    EXPECT_GT(readings[i].caudal[physiology::kLungBase], readings[i].caudal[physiology::kLungApex]);
+    EXPECT_GE(readings[i].volume * 1.05, moments[i].volume) << "the peak of the breath";
+  }
 }
 
 TEST(LiveLungs, AreRefusedForASceneWithoutLungs) {

@@ -114,15 +114,20 @@ TEST_F(LungBreath, IsReadByVtkAndNibabelAlike) {
   const std::string python = "/usr/bin/python3 ";
   if (!Runs(python + "-c 'import vtk'")) GTEST_SKIP() << "VTK is not installed (python3-vtk9)";
   if (!Runs(python + "-c 'import nibabel'")) GTEST_SKIP() << "nibabel is not installed (python3-nibabel)";
-  const std::string vti = testing::TempDir() + "phrenic_lungs.vti", nii = testing::TempDir() + "phrenic_lungs.nii.gz";
+  const std::string vti = testing::TempDir() + "phrenic_lungs.vti", nii = testing::TempDir() + "phrenic_lungs.nii.gz",
+                    vtu = testing::TempDir() + "phrenic_lungs.vtu";
   const std::string lungs =
       PHRENIC_BINARY_DIR "/phrenic lungs thorax --resolution 20 --preset quiet --spacing 12 --grid ";
   ASSERT_TRUE(Runs(lungs + vti));
   ASSERT_TRUE(Runs(lungs + nii));
+  ASSERT_TRUE(Runs(lungs + vtu));
   EXPECT_EQ(
-      std::system((python + PHRENIC_SOURCE_DIR "/tests/physiology/read_lung_fields.py " + vti + " " + nii).c_str()), 0);
+      std::system(
+          (python + PHRENIC_SOURCE_DIR "/tests/physiology/read_lung_fields.py " + vti + " " + nii + " " + vtu).c_str()),
+      0);
   std::remove(vti.c_str());
   std::remove(nii.c_str());
+  std::remove(vtu.c_str());
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-# read_lung_fields.py VTI NIFTI: reads a lung field with VTK and with nibabel; fails unless both hold the same vectors at
-# the same points in LPS, of a quiet breath: down at the base, volume gained.
+# read_lung_fields.py VTI NIFTI VTU: reads a lung field with VTK and with nibabel; fails unless all hold the same vectors
+# at the same points in LPS, of a quiet breath: down at the base, volume gained.
 import sys
 
 import nibabel
@@ -33,3 +33,22 @@ assert np.all(points[arrays["lung"][inside] == 1, 0] < 0), "the right lung lies 
 assert down[z < np.quantile(z, 0.2)].mean() > 5 > down[z > np.quantile(z, 0.9)].mean()
 assert arrays["ventilation"][inside].mean() > 0.03
 assert np.all(arrays["displacement"][~inside] == 0)
+
+# The bricks have the same field: probed at the image's points, where both are inside a lung.
+reader = vtk.vtkXMLUnstructuredGridReader()
+reader.SetFileName(sys.argv[3])
+reader.Update()
+bricks = reader.GetOutput()
+assert bricks.GetNumberOfCells() > 200 and bricks.GetCellType(0) == vtk.VTK_VOXEL
+part = vtk_to_numpy(bricks.GetCellData().GetArray("inside"))
+assert part.min() >= 0 and part.max() == 1
+probe = vtk.vtkProbeFilter()
+probe.SetInputData(image)
+probe.SetSourceData(bricks)
+probe.Update()
+probed = probe.GetOutput().GetPointData()
+valid = vtk_to_numpy(probed.GetArray("vtkValidPointMask"))[inside] == 1
+# Where the lattices of both lungs overlap the probe may take either.
+same = np.abs(vtk_to_numpy(probed.GetArray("displacement"))[inside] - arrays["displacement"][inside]).max(axis=1) < 1e-3
+assert valid.mean() > 0.99, valid.mean()
+assert same[valid].mean() > 0.97, same[valid].mean()

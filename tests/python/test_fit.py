@@ -43,6 +43,37 @@ def write(folder: str, name: str, rows: np.ndarray) -> Path:
     return path
 
 
+class StudyTest(SessionTest):
+    def test_many_people_are_judged_as_one_by_one(self):
+        said = []
+        cases = {"anna": pairs(), "ben": pairs()[::-1].copy()}
+        study = phrenic.people.study(cases, modes=12, split=5, progress=lambda done, text: said.append((done, text)))
+        self.assertEqual(list(study.people["name"]), ["anna", "ben"])
+        self.assertAlmostEqual(study.people[0]["held_out_mm"], fitted().held_out_mm, places=9)
+        self.assertAlmostEqual(study.held_out_mm, float(np.mean(study.people["held_out_mm"])), places=9)
+        self.assertGreater(study.from_one_number_mm, 0)
+        self.assertTrue(any(text.startswith("ben, ") for _, text in said))
+        self.assertEqual(sorted(done for done, _ in said), [done for done, _ in said])
+        self.assertEqual(len(study.together.mean), 12)
+
+    def test_what_cannot_be_studied_is_refused(self):
+        with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "cases"):
+            phrenic.people.study({})
+        with self.assertRaisesRegex(phrenic.errors.InvalidArgument, r"cases\[0\].name"):
+            phrenic.people.study({"\n": pairs()})
+        with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "modes"):
+            phrenic.people.study({"anna": pairs()}, modes=9)
+
+    def test_it_ends_when_its_caller_does(self):
+        def leave(done: float, text: str) -> None:
+            raise KeyboardInterrupt
+
+        began = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            phrenic.people.study({str(i): pairs() for i in range(40)}, progress=leave)
+        self.assertLess(time.monotonic() - began, 20)
+
+
 class FitTest(SessionTest):
     def test_it_has_the_numbers_of_the_command(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -14,6 +14,7 @@
 #ifndef PHRENIC_SERVER_MECHANICS_LUNGS_LUNG_RESPONSES_H_
 #define PHRENIC_SERVER_MECHANICS_LUNGS_LUNG_RESPONSES_H_
 
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -44,8 +45,11 @@ class LungResponses {
   static absl::StatusOr<LungResponses> Make(const LungTissue& tissue, const std::vector<LungNeighbour>& neighbours,
                                             const StopCheck& stop = {});
 
+  // Tissue that moves by given shapes (3 nodes x shapes), of which the caller knows the amplitudes.
+  LungResponses(BrickGrid grid, Eigen::MatrixXd shapes) : grid_(std::move(grid)), shapes_(std::move(shapes)) {}
+
   // Returns the amplitudes q [m] for displacements of the surroundings at the boundary points (3 x points) [m]. Free
-  // points are not read.
+  // points are not read. Requires: made by Make.
   Eigen::VectorXd Amplitudes(const ConstPoints& displacement) const;
   // Returns the displacement of the grid's nodes (3 x nodes) [m].
   Points Nodes(const Eigen::VectorXd& amplitudes) const;

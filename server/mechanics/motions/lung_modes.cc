@@ -34,6 +34,15 @@ double DistanceFrom(const LungTissue& tissue, const Eigen::Vector3d& point) {
   return tissue.Contains(point) ? -1 : tissue.box().squaredExteriorDistance(point);
 }
 
+// Returns the responses of a lung's nodes as columns, zero for those that do not move it.
+Eigen::MatrixXd ShapesOf(const LungTissue& tissue, const std::vector<Points>& nodes) {
+  Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(3 * tissue.grid().nodes().cols(), kModeParameters);
+  for (size_t m = 0; m < nodes.size(); ++m) {
+    if (nodes[m].cols() > 0) shapes.col(static_cast<Eigen::Index>(m)) = nodes[m].reshaped();
+  }
+  return shapes;
+}
+
 }  // namespace
 
 const LungModes::Lung& LungModes::LungAt(const Eigen::Vector3d& point, int body, const std::vector<Lung>& lungs) {
@@ -102,6 +111,9 @@ absl::StatusOr<std::unique_ptr<Motion>> LungModes::Make(const v1::LungModes& sce
   const auto lungs = Solve(scene.lungs(), field + ".lungs", builder);
   if (!lungs.ok()) return lungs.status();
   std::unique_ptr<LungModes> motion(new LungModes(ElementName(given, "lung-modes", scene.lungs())));
+  for (const Lung& lung : *lungs) {
+    motion->insides_.push_back({lung.body, lung.tissue.grid(), lung.tissue.box(), ShapesOf(lung.tissue, lung.nodes)});
+  }
   std::int64_t vertices = 0;
   const auto add = [&](const Names& names, const std::string& where) -> absl::Status {
     if (names.empty()) return absl::OkStatus();
@@ -123,6 +135,17 @@ absl::StatusOr<std::unique_ptr<Motion>> LungModes::Make(const v1::LungModes& sce
   builder.ReportElement("motion", motion->name(), vertices, "vertices",
                         absl::StrCat(kModeParameters, " boundary modes"));
   return motion;
+}
+
+Eigen::Vector<double, kModeParameters> LungModes::AmplitudesAt(const EvalContext& at) {
+  return at.parameters.breath_force() * at.breath * ModeAmplitudes(at.parameters);
+}
+
+const LungModes* LungModes::Find(const Model& model) {
+  for (const auto& motion : model.motions) {
+    if (const auto* modes = dynamic_cast<const LungModes*>(motion.get())) return modes;
+  }
+  return nullptr;
 }
 
 void LungModes::Drive(const EvalContext& at, State& state) const {

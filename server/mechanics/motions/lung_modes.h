@@ -27,6 +27,19 @@ class LungModes final : public Motion {
   // inside out has a negative volume.
   std::string Warning(const State& state) const override;
 
+  // The inside of a lung: what tissue probes and fields read.
+  struct Inside {
+    int body;  // in Model::bodies
+    BrickGrid grid;
+    Eigen::AlignedBox3d box;  // of the surface [m]
+    Eigen::MatrixXd shapes;   // displacement of the nodes per amplitude, row 3 node + axis (3 nodes x parameters) [1]
+  };
+  const std::vector<Inside>& insides() const { return insides_; }
+  // Returns s a_m [m], by which the shapes are multiplied at this moment.
+  static Eigen::Vector<double, kModeParameters> AmplitudesAt(const EvalContext& at);
+  // Returns the motion of this kind that the model has; null without. It lives as long as the model.
+  static const LungModes* Find(const Model& model);
+
  private:
   using Responses = Eigen::Matrix<double, Eigen::Dynamic, kModeParameters>;  // row 3 i + axis of vertex i [1]
 
@@ -50,6 +63,7 @@ class LungModes final : public Motion {
                                                  const ModelBuilder& builder);
 
   std::vector<Moved> moved_;
+  std::vector<Inside> insides_;
 };
 
 }  // namespace phrenic

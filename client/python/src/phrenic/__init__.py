@@ -33,6 +33,7 @@ from .runs import Run, batch
 from .server import LocalServer, Server, connect, default_server, local
 from .session import Session, Studies
 from .table import Table
+from .tissue import Tissue
 
 __version__ = "0.1.0"
 __all__ = [
@@ -52,6 +53,7 @@ __all__ = [
     "Studies",
     "Study",
     "Table",
+    "Tissue",
     "Tls",
     "aio",
     "batch",
@@ -65,6 +67,6 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Imports the modules that few programs need when they are first used: phrenic.motion.to_netcdf(...)."""
-    if name in ("gym", "motion", "notebook", "vector"):
+    if name in ("gym", "motion", "notebook", "people", "vector"):
         return import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -19,6 +19,7 @@ from .v1 import (
     server_pb2_grpc,
     session_pb2_grpc,
     study_pb2_grpc,
+    tissue_pb2_grpc,
 )
 
 SERVICES: dict[str, Callable[[Any], Any]] = {
@@ -31,6 +32,7 @@ SERVICES: dict[str, Callable[[Any], Any]] = {
     "ServerService": server_pb2_grpc.ServerServiceStub,
     "SessionService": session_pb2_grpc.SessionServiceStub,
     "StudyService": study_pb2_grpc.StudyServiceStub,
+    "TissueService": tissue_pb2_grpc.TissueServiceStub,
 }
 
 LONG = 3600.0

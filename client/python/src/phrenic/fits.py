@@ -167,7 +167,7 @@ def fitted(
     """Fits, and returns the result. `options`: those of `fit`."""
     given = {kind: options.get(name) for name, kind in OPTIONS.items()}
     measured = _measured(landmarks, given, options.get("errors") or {})
-    files = [] if landmarks is None or measured else _files(landmarks)
+    files = [] if landmarks is None or measured else landmark_files(landmarks)
     fields = {name: value for name, value in options.items() if name not in OPTIONS and name != "errors"}
     request = fill(fit_pb2.FitMotionRequest(source=source, landmarks=files, measured=measured), fields)
     results: list[fit_pb2.MotionFitResult] = []
@@ -197,7 +197,7 @@ def _measured(
     if not files and not phased and not errors:
         return []
     if isinstance(landmarks, np.ndarray):
-        content = _files(landmarks)[0].content
+        content = landmark_files(landmarks)[0].content
         files.append(fit_pb2.MeasuredFile(kind=KINDS["landmarks"], name="landmarks", content=content))
         if "landmarks" in errors:
             files[-1].error = errors["landmarks"]
@@ -236,7 +236,7 @@ def _measured_file(kind: str, text: str, errors: Mapping[str, float]) -> fit_pb2
     return file
 
 
-def _files(landmarks: Landmarks) -> list[fit_pb2.LandmarkFile]:
+def landmark_files(landmarks: Landmarks) -> list[fit_pb2.LandmarkFile]:
     """Returns the landmarks as the server takes them."""
     if isinstance(landmarks, np.ndarray):
         if landmarks.ndim != 2 or landmarks.shape[1] != 6:

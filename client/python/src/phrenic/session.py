@@ -15,6 +15,7 @@ from .errors import error_of
 from .fits import Fit, Landmarks, fitted
 from .frame import Frame
 from .operations import EVERYTHING, Scene, SessionOperations, create, parts_of, source_of
+from .tissue import Tissue, tissue
 from .v1 import session_pb2, state_pb2
 
 if TYPE_CHECKING:
@@ -143,6 +144,11 @@ class Session(SessionOperations):
         """Returns the forces on a vertex by kind, {"springs": (3,) array, ...} [N]; with `kind`, its magnitude on each
         vertex of the body [N]; with neither, the kinds."""
         return self._do(self._forces(body, vertex, kind))
+
+    def tissue(self, points: Optional[Sequence[Sequence[float]]] = None) -> Tissue:
+        """Returns how the inside of the lungs has moved since rest; `points`: at most 64 places at rest [m], read as well.
+        FailedPrecondition for a scene without lung tissue. The first call takes a second or two."""
+        return self._do(tissue(self, points))
 
     # --- changing ---
     def set(self, preset: str = "", at_tick: Optional[int] = None, **parameters: Any) -> None:
