@@ -10,15 +10,15 @@ namespace phrenic::lti {
 
 struct Request {
   bool post = false;
-  std::string target;  // path and query, "/lti/login?iss=..."
-  std::string body;    // of a POST: a form
-  std::string cookies;
+  std::string target;     // path and query, "/lti/login?iss=..."
+  std::string body = "";  // of a POST: a form
+  std::string cookies = "";
 };
 
 struct Response {
   unsigned status = 200;
   std::string type = "text/html; charset=utf-8";
-  std::string text;
+  std::string text = "";
   std::vector<std::pair<std::string, std::string>> headers = {};
 };
 

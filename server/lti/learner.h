@@ -18,13 +18,13 @@ struct Learner {
     std::map<int, bool> right;  // the last answer to each question, by step
   };
 
-  std::string platform;                           // key of the platform (KeyOf)
-  std::string course;                             // deployment and course
-  std::string user;                               // "sub"
-  std::string session;                            // in which the learner answers
-  std::string respondent;                         // secret of SubmitAnswerRequest
-  std::map<std::string, Assignment> assignments;  // by lesson; 100 at most
-  absl::Time seen;                                // the last launch
+  std::string platform;                                // key of the platform (KeyOf)
+  std::string course;                                  // deployment and course
+  std::string user;                                    // "sub"
+  std::string session = "";                            // in which the learner answers
+  std::string respondent = "";                         // secret of SubmitAnswerRequest
+  std::map<std::string, Assignment> assignments = {};  // by lesson; 100 at most
+  absl::Time seen = absl::InfinitePast();              // the last launch
 };
 
 // Returns the key under which the learner is kept: no part of it can be read from it.

@@ -13,11 +13,11 @@
 namespace phrenic::lti {
 namespace {
 
-constexpr std::size_t kMostLessonBytes = 1 << 20, kMostNameBytes = 80;
+constexpr std::size_t kMostLessonBytes = 1 << 20, kMostLessonName = 80;
 
 bool IsLessonName(const std::string& name) {
   const auto allowed = [](char c) { return absl::ascii_islower(c) || absl::ascii_isdigit(c) || c == '-'; };
-  return !name.empty() && name.size() <= kMostNameBytes && std::all_of(name.begin(), name.end(), allowed);
+  return !name.empty() && name.size() <= kMostLessonName && std::all_of(name.begin(), name.end(), allowed);
 }
 
 }  // namespace

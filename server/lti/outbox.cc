@@ -80,8 +80,9 @@ std::size_t Outbox::size() const {
 }
 
 std::map<std::string, Outbox::Waiting>::iterator Outbox::Next() {
-  return std::min_element(waiting_.begin(), waiting_.end(),
-                          [](const auto& a, const auto& b) { return a.second.due < b.second.due; });
+  return std::min_element(waiting_.begin(), waiting_.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.second.due, a.second.version) < std::pair(b.second.due, b.second.version);
+  });
 }
 
 void Outbox::Settle(const Waiting& tried, const absl::Status& outcome) {

@@ -109,7 +109,8 @@ std::string OriginOf(std::string_view address) {
 
 absl::StatusOr<Platform> ReadPlatform(std::string_view text) {
   Platform platform;
-  for (const std::string& word : absl::StrSplit(std::string(text), absl::ByAnyChar(" \t"), absl::SkipEmpty())) {
+  const std::vector<std::string> words = absl::StrSplit(std::string(text), absl::ByAnyChar(" \t"), absl::SkipEmpty());
+  for (const std::string& word : words) {
     const std::pair<std::string, std::string> field = absl::StrSplit(word, absl::MaxSplits('=', 1));
     if (field.second.empty()) return BadSetting(field.first, "write NAME=VALUE");
     if (absl::Status status = AddField(field.first, field.second, platform); !status.ok()) return status;

@@ -1,5 +1,8 @@
 #include "server/lti/platform_client.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
@@ -17,7 +20,7 @@ using nlohmann::json;
 constexpr char kScore[] = "https://purl.imsglobal.org/spec/lti-ags/scope/score";
 constexpr char kMembers[] = "https://purl.imsglobal.org/spec/lti-nrps/scope/contextmembership.readonly";
 constexpr int kAssertionSeconds = 300, kMostPages = 20;
-constexpr std::size_t kMostMembers = 10'000, kMostNameBytes = 200;
+constexpr std::size_t kMostMembers = 10'000, kMostMemberBytes = 200;
 constexpr absl::Duration kTokenMargin = absl::Seconds(60);
 
 std::string StringIn(const json& object, const char* name) {
@@ -34,7 +37,8 @@ std::string ScoresOf(const std::string& line_item) {
 
 // Returns the address of the next page; empty if there is none (RFC 8288).
 std::string NextOf(const std::string& link) {
-  for (const std::string& each : absl::StrSplit(link, ',')) {
+  const std::vector<std::string> links = absl::StrSplit(link, ',');
+  for (const std::string& each : links) {
     const std::size_t begin = each.find('<'), end = each.find('>');
     if (begin == std::string::npos || end == std::string::npos || end < begin) continue;
     const std::string rest = each.substr(end);
@@ -52,7 +56,7 @@ void AddMembers(const std::string& body, MemberNames& names) {
     const std::string user = StringIn(member, "user_id");
     std::string name = StringIn(member, "name");
     if (name.empty()) name = absl::StrCat(StringIn(member, "given_name"), " ", StringIn(member, "family_name"));
-    if (!user.empty() && name.size() > 1 && name.size() <= kMostNameBytes && names.size() < kMostMembers) {
+    if (!user.empty() && name.size() > 1 && name.size() <= kMostMemberBytes && names.size() < kMostMembers) {
       names[user] = std::move(name);
     }
   }

@@ -17,8 +17,8 @@ absl::StatusOr<std::shared_ptr<const access::KeySet>> PlatformKeys::Keys(absl::D
   }
   fetched_ = now;
   const auto text = fetch_(url_);
-  if (!text.ok()) return keys_ != nullptr ? absl::StatusOr(keys_) : text.status();
-  auto keys = access::KeySet::Parse(*text);
+  if (!text.ok() && keys_ == nullptr) return text.status();
+  auto keys = access::KeySet::Parse(text.value_or(""));
   if (keys != nullptr) keys_ = std::move(keys);
   if (keys_ != nullptr) return keys_;
   return absl::UnavailableError(absl::StrCat(url_, ": is not a JSON Web Key Set with an RSA or EC key"));

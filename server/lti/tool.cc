@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 constexpr absl::Duration kLoginTime = absl::Minutes(10), kChoiceTime = absl::Minutes(30),
-                         kNamesKept = absl::Minutes(10);
+                         kNamesKept = absl::Minutes(10), kNamesPause = absl::Minutes(1);
 constexpr int kCookieSeconds = 600, kResponseSeconds = 300;
 constexpr std::size_t kMostCourses = 1000, kIdLength = 12, kCookieIdLength = 12;
 constexpr char kToolClaim[] = "https://purl.imsglobal.org/spec/lti/claim/";
@@ -66,7 +66,8 @@ Tool::Tool(Parts parts)
     const auto answer = exchange_({address});
     if (!answer.ok()) return answer.status();
     absl::Status status = StatusOfHttp(address, answer->status);
-    return status.ok() ? absl::StatusOr(answer->body) : absl::UnavailableError(status.message());
+    if (!status.ok()) return absl::UnavailableError(status.message());
+    return answer->body;
   };
   for (const Platform& platform : parts_.settings.platforms) {
     keys_.push_back(std::make_unique<PlatformKeys>(platform.keys_url, fetch));
@@ -276,6 +277,8 @@ std::map<std::string, std::string> Tool::Names(const std::string& session, absl:
   if (now - course.read > kNamesKept) {
     auto names = clients_[course.platform]->Members(course.memberships);
     if (!names.ok()) {
+      absl::MutexLock lock(&mutex_);
+      courses_[session].read = now - kNamesKept + kNamesPause;  // so that an open table does not ask all the time
       spdlog::warn("lti: the names of a course cannot be read: {}", std::string(names.status().message()));
       return {};
     }

@@ -22,7 +22,7 @@ struct Deed {
   std::string lesson;
   std::string words;  // title of the lesson or the question
   int step = 0;       // of an answer
-  std::string response;
+  std::string response = "";
   bool right = false;
   int score = 0, most = 0;  // of a completed lesson
 };

@@ -3,6 +3,7 @@ import { App } from "./app/app";
 import { createApi, errorText } from "./connection/api";
 import { Credentials, credentialsInterceptor, storeJoinLink } from "./connection/credentials";
 import { Identity, identityInterceptor } from "./connection/identity";
+import { userStorage } from "./connection/launch";
 import { routingInterceptor } from "./connection/routing";
 import { elementById, make } from "./dom/elements";
 import { SessionChooser } from "./panels/session/session_chooser";
@@ -20,8 +21,10 @@ window.addEventListener("pageshow", () => (leaving = false));
 const fetchKeepingAlive: typeof fetch = (input, init) => fetch(input, { ...init, keepalive: leaving });
 
 // The page and the services have the same origin.
-const identity = new Identity(localStorage);
-const credentials = new Credentials(localStorage);
+const here = new URL(location.href);
+const storage = userStorage(here, localStorage, sessionStorage);
+const identity = new Identity(storage);
+const credentials = new Credentials(storage);
 const interceptors = [identityInterceptor(identity), credentialsInterceptor(credentials), routingInterceptor()];
 const api = createApi(createGrpcWebTransport({ baseUrl: location.origin, fetch: fetchKeepingAlive, interceptors }));
 
@@ -40,7 +43,6 @@ function showWaiting(error?: unknown): void {
   else loading.replaceChildren(`No answer from the server (${errorText(error)}). Trying again…`);
 }
 
-const here = new URL(location.href);
 storeJoinLink(here, credentials);
 
 /** Returns the session of the address, or runs the simulation that the address describes. */

@@ -18,12 +18,17 @@ export class Identity {
 
   /** The secret that identifies this browser among those who answer a lesson's questions. */
   get respondent(): string {
-    const known = this.storage.getItem("phrenic-respondent");
-    if (known !== null) return known;
+    const known = this.storage.getItem("phrenic-respondent") ?? "";
+    if (known !== "") return known;
     const bytes = [...crypto.getRandomValues(new Uint8Array(16))];
     const secret = bytes.map((byte) => byte.toString(16).padStart(2, "0")).join("");
     this.storage.setItem("phrenic-respondent", secret);
     return secret;
+  }
+
+  /** True if a school's platform launched this page: it knows who the user is. */
+  get launched(): boolean {
+    return this.storage.getItem("phrenic-launch") === "1";
   }
 
   /** True if the camera follows that of the participant in control. */
