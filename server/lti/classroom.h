@@ -21,8 +21,8 @@ struct Visit {
 class Classroom {
  public:
   virtual ~Classroom() = default;
-  // Returns the credentials as the fragment of the viewer's address: "account=TOKEN" or "join=SECRET". Blocks while the
-  // session is made. The errors of the session's creation, in words for its users.
+  // Returns the credentials as the fragment of the viewer's address: "account=TOKEN&control=TOKEN" or "join=SECRET".
+  // Blocks while the session is made. The errors of the session's creation, in words for its users.
   virtual absl::StatusOr<std::string> Admit(const Visit& visit) = 0;
 };
 

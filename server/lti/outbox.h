@@ -19,10 +19,10 @@ namespace phrenic::lti {
 
 // A message that waits. Plain data; kept in the store as JSON.
 struct Parcel {
-  std::string id;          // a newer parcel of this id replaces an older one that has not arrived
-  std::string receiver;    // key of a platform (Grading); empty: the store of learning records
-  std::string address;     // of a score: the line item
-  nlohmann::json content;  // the score or the statement
+  std::string id;               // a newer parcel of this id replaces an older one that has not arrived
+  std::string receiver = "";    // key of a platform (Grading); empty: the store of learning records
+  std::string address = "";     // of a score: the line item
+  nlohmann::json content = {};  // the score or the statement
   int attempts = 0;
   absl::Time first = absl::InfinitePast();  // when it was added
 };

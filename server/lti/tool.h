@@ -14,6 +14,7 @@
 #include "absl/time/time.h"
 #include "phrenic/v1/answers.pb.h"
 #include "server/lti/classroom.h"
+#include "server/lti/form.h"
 #include "server/lti/grading.h"
 #include "server/lti/http.h"
 #include "server/lti/launch.h"

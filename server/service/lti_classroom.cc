@@ -13,6 +13,7 @@ namespace phrenic::service {
 namespace {
 
 constexpr absl::Duration kLessonTime = absl::Hours(12), kLinkTime = absl::Hours(24);
+constexpr char kTeacher[] = "Teacher";  // under which all teachers of the course control the session
 constexpr std::size_t kLinkIdLength = 8, kMostLinksKept = 10'000;
 
 }  // namespace
@@ -26,7 +27,7 @@ absl::StatusOr<std::shared_ptr<session::Session>> LtiClassroom::FindOrCreate(con
   v1::CreateSessionRequest request;
   request.set_session_id(visit.session);
   request.mutable_source()->set_name(visit.scene);
-  auto control = session::ControlBook::Make(v1::CONTROL_POLICY_EVERYBODY, "", visit.account);
+  auto control = session::ControlBook::Make(v1::CONTROL_POLICY_OWNER, kTeacher, visit.account);
   if (!control.ok()) return control.status();
   session::Requester requester;
   requester.owner = requester.share = visit.account;
@@ -36,6 +37,18 @@ absl::StatusOr<std::shared_ptr<session::Session>> LtiClassroom::FindOrCreate(con
         absl::StrCat("The server has no room for another class now. ", made.status().message()));
   }
   return made;
+}
+
+absl::StatusOr<std::string> LtiClassroom::OwnerToken(session::Session& session, bool learners_control) {
+  std::string token;
+  const auto read = session.ChangeControl([&](session::ControlBook& book, absl::Time now) {
+    token = book.state().owner.token;
+    const bool lend =
+        learners_control && book.state().policy == v1::CONTROL_POLICY_OWNER && book.state().holder.empty();
+    return lend ? book.HandToEverybody(token, now) : absl::OkStatus();
+  });
+  if (!read.ok()) return read.status();
+  return token;
 }
 
 absl::StatusOr<std::string> LtiClassroom::LinkOf(session::Session& session, v1::AccessRole role) {
@@ -63,12 +76,17 @@ absl::StatusOr<std::string> LtiClassroom::Admit(const lti::Visit& visit) {
   absl::MutexLock lock(&mutex_);
   auto session = FindOrCreate(visit);
   if (!session.ok()) return session.status();
+  const auto token = OwnerToken(**session, visit.learners_control);
+  if (!token.ok()) return token.status();
   const v1::Session status = (*session)->status();
   if (status.state() == v1::SESSION_STATE_PAUSED && status.viewers() == 0) {
-    if (auto played = (*session)->Play(std::nullopt, false, 0); !played.ok()) return played.status();
+    // A learner who controls the session has paused it, if it may not be played.
+    auto played = (*session)->Play(std::nullopt, false, 0, *token);
+    if (!played.ok() && !absl::IsPermissionDenied(played.status())) return played.status();
   }
   if (visit.teaches) {
-    return "account=" + accounts_.Issue({visit.account, v1::ACCESS_ROLE_OWNER}, absl::Now() + kLessonTime);
+    const std::string account = accounts_.Issue({visit.account, v1::ACCESS_ROLE_OWNER}, absl::Now() + kLessonTime);
+    return absl::StrCat("account=", account, "&control=", *token);
   }
   auto secret = LinkOf(**session, visit.learners_control ? v1::ACCESS_ROLE_CONTROLLER : v1::ACCESS_ROLE_VIEWER);
   if (!secret.ok()) return secret.status();

@@ -17,8 +17,9 @@ namespace phrenic::service {
 
 // Thread-safe. The server owns one if it is a tool of learning platforms.
 //
-// A teacher gets a token of the course's account with the role of an owner; a learner gets the session's join link,
-// with the role of a viewer or a controller. Both end after twelve hours.
+// A teacher gets a token of the course's account with the role of an owner, and the control token of the session's
+// owner; a learner gets the session's join link, with the role of a viewer or a controller. Teachers alone control the
+// session until a lesson lets learners do so. Token and link end after twelve hours or more.
 class LtiClassroom final : public lti::Classroom {
  public:
   // All outlive the classroom.
@@ -36,6 +37,8 @@ class LtiClassroom final : public lti::Classroom {
 
   absl::StatusOr<std::shared_ptr<session::Session>> FindOrCreate(const lti::Visit& visit)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Returns the control token of the session's owner, and lets everybody control the session if learners may.
+  static absl::StatusOr<std::string> OwnerToken(session::Session& session, bool learners_control);
   // Returns the secret of a link of the role, which learners of the session share.
   absl::StatusOr<std::string> LinkOf(session::Session& session, v1::AccessRole role)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);

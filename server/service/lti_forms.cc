@@ -31,6 +31,7 @@ void LtiForms::AddTo(WebSettings& settings) {
   for (const lti::Platform& platform : settings_.platforms) {
     settings.framers.insert(settings.framers.end(), platform.origins.begin(), platform.origins.end());
   }
+  settings.allowed_hosts.push_back(settings_.url.substr(settings_.url.find("://") + 3));
   settings.form = [this](WebSettings::Form form, std::function<void(WebSettings::Page)> done) {
     if (waiting_ >= kMostForms) return done(BusyPage());
     ++waiting_;

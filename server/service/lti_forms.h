@@ -22,8 +22,8 @@ class LtiForms {
            lti::Classroom& classroom, store::Store* store);
 
   lti::Tool& tool() { return tool_; }
-  // Makes the gateway answer /lti/ and lets the platforms frame the viewer. The gateway must be shut down before
-  // Shutdown, and destroyed after it.
+  // Makes the gateway answer /lti/ at the host of --lti-url, and lets the platforms frame the viewer. The gateway must
+  // be shut down before Shutdown, and destroyed after it.
   void AddTo(WebSettings& settings);
   // Returns what hears of answers.
   SessionService::Listener listener();

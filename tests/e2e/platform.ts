@@ -2,6 +2,7 @@ import {
   createHmac,
   createPublicKey,
   generateKeyPairSync,
+  type JsonWebKey,
   type KeyObject,
   randomUUID,
   sign,
@@ -212,7 +213,7 @@ export class Platform {
   private async verified(token: string): Promise<Claims> {
     const [header = "", claims = "", signature = ""] = token.split(".");
     const { keys } = (await (await fetch(`${this.tool}/lti/jwks`)).json()) as {
-      keys: JsonWebKey[] & { kid: string }[];
+      keys: (JsonWebKey & { kid: string })[];
     };
     const key = keys.find(({ kid }) => kid === decode(header).kid);
     if (key === undefined || decode(header).alg !== "RS256") throw new Error("key");

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <set>
 
+#include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
@@ -242,11 +243,7 @@ TEST_F(ToolTest, RefusesWhatThePlatformDidNotSign) {
   // No signature.
   begun = Begin();
   claims["nonce"] = begun.nonce;
-  const auto part = [](const std::string& text) {
-    std::string encoded;
-    absl::WebSafeBase64Escape(text, &encoded);
-    return encoded;
-  };
+  const auto part = [](const std::string& text) { return absl::WebSafeBase64Escape(text); };
   EXPECT_EQ(Post(begun, part(R"({"alg":"none"})") + "." + part(claims.dump()) + ".").status, 401U);
   // The public key as the secret of a symmetric signature.
   begun = Begin();
@@ -325,7 +322,9 @@ TEST_F(ToolTest, StatesWhatALearnerDoes) {
     EXPECT_EQ(statement["actor"]["account"]["name"], "user-7");
     EXPECT_FALSE(statement["actor"].contains("name"));
     EXPECT_THAT(request.headers, testing::Contains("Authorization: Basic dXNlcjpzZWNyZXQ="));
-    if (statement["verb"]["display"]["en"] == "completed") EXPECT_EQ(statement["result"]["score"]["scaled"], 1.0);
+    if (statement["verb"]["display"]["en"] == "completed") {
+      EXPECT_EQ(statement["result"]["score"]["scaled"], 1.0);
+    }
   }
   EXPECT_EQ(verbs.count("launched"), 1U);
   EXPECT_EQ(verbs.count("answered"), questions);

@@ -59,9 +59,9 @@ struct WebSettings {
   std::function<std::optional<Page>(std::string_view target, const Credentials& credentials)> page;
   // Answers the requests to targets that begin with "/lti/"; calls `done` once, on any thread, before the gateway is
   // destroyed. Returns at once. Null: there are none, and their targets are as all others.
-  std::function<void(Form form, std::function<void(Page page)> done)> form;
+  std::function<void(Form form, std::function<void(Page page)> done)> form = nullptr;
   // Origins that may frame the viewer, beside allowed_origins.
-  std::vector<std::string> framers;
+  std::vector<std::string> framers = {};
   // Returns under which name the sender of a request has its part of the budget for bodies, empty for its IP address;
   // nullopt if it is not known, so that its bodies must be small. Null: everybody is known. Thread-safe. Called for
   // bodies above 64 KiB.

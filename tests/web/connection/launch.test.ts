@@ -30,7 +30,10 @@ test("ALaunchIsKeptInItsTabAlone", () => {
 test("ASecondLaunchReplacesTheFirst", () => {
   const tab = memory();
   userStorage(new URL(`http://host/#launch=1&join=${join}&respondent=${respondent}`), memory(), tab);
-  const storage = userStorage(new URL(`http://host/#launch=1&account=${join}`), memory(), tab);
+  const teacher = new URL(`http://host/?session=s#launch=1&account=${join}&control=${respondent}`);
+  const storage = userStorage(teacher, memory(), tab);
+  expect(new Identity(storage).tokenOf("s")).toBe(respondent);
+  expect(new Identity(storage).name).toBe("Teacher");
   expect(new Credentials(storage).joinLinks).toEqual([]);
   expect(new Credentials(storage).token).toBe(join);
   expect(new Identity(storage).respondent).not.toBe(respondent);

@@ -16,10 +16,12 @@ export function userStorage(address: URL, own: KeyValueStorage, tab: KeyValueSto
   const fragment = new URLSearchParams(address.hash.slice(1));
   if (fragment.get("launch") === "1") {
     tab.setItem("phrenic-launch", "1");
-    for (const [field, key] of given) {
-      const secret = fragment.get(field) ?? "";
-      tab.setItem(key, /^[0-9a-f]{32}$/.test(secret) ? secret : "");
-    }
+    const secret = (field: string) => /^[0-9a-f]{32}$/.exec(fragment.get(field) ?? "")?.[0] ?? "";
+    for (const [field, key] of given) tab.setItem(key, secret(field));
+    // Teachers control the session under one name.
+    tab.setItem("phrenic-name", secret("control") === "" ? "" : "Teacher");
+    const session = address.searchParams.get("session") ?? "";
+    tab.setItem("phrenic-tokens", JSON.stringify(secret("control") === "" ? {} : { [session]: secret("control") }));
   }
   return tab.getItem("phrenic-launch") === "1" ? tab : own;
 }
