@@ -1,19 +1,18 @@
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { readFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import type { Browser, FrameLocator, Page } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { isComplaint, launchBrowser } from "./browser";
+import { isComplaint, launchBrowser } from "../browser";
 import { Platform } from "./platform";
-import { outFolder, Server } from "./server";
+import { outFolder, Server } from "../server";
 
 const folder = mkdtempSync(join(tmpdir(), "phrenic-lti-"));
 const platform = new Platform();
 let server: Server;
 let browser: Browser;
 
-const lessonFile = join(import.meta.dirname, "../../web/public/lessons/paralysis.json");
+const lessonFile = join(import.meta.dirname, "../../../web/public/lessons/paralysis.json");
 const lesson = JSON.parse(readFileSync(lessonFile, "utf8")) as {
   steps: { title: string; question?: { answers: { words: string; right?: boolean }[] } }[];
 };
