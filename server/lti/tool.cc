@@ -182,11 +182,13 @@ absl::StatusOr<Tool::Choice> Tool::ReadToken(const Fields& fields, const std::st
 
 Response Tool::OnLaunch(const Fields& fields, const std::string& cookies, absl::Time now) {
   auto choice = ReadToken(fields, cookies, now);
-  absl::StatusOr<Response> response = choice.status();
-  if (choice.ok() && choice->launch.chooses) {
+  absl::StatusOr<Response> response;
+  if (!choice.ok()) {
+    response = choice.status();
+  } else if (choice->launch.chooses) {
     const auto framers = FramersOf(parts_.settings.platforms[choice->platform]);
     response = ChoicePage(lessons_.List(), choices_.Issue(*std::move(choice), now), framers);
-  } else if (choice.ok()) {
+  } else {
     response = OpenLesson(*choice, now);
   }
   if (response.ok()) return *std::move(response);

@@ -36,9 +36,11 @@ export interface Received {
 export class Platform {
   readonly received: Received = { scores: [], statements: [], deepLinks: [] };
   readonly client = "phrenic-client";
+  /** The course's learner. */
+  learner = "anna";
   /** The last form that it sent to the tool. */
   lastForm: Record<string, string> = {};
-  private key = newKey();
+  private readonly key = newKey();
   private readonly http: HttpServer;
   private port = 0;
   private tool = "";
@@ -92,11 +94,6 @@ export class Platform {
     return ["--lti-url", tool, "--lti-platform", platform, "--xapi-url", `${url}/xapi`, "--xapi-user", "phrenic"];
   }
 
-  /** Changes the key of signatures. */
-  rotate(): void {
-    this.key = newKey();
-  }
-
   /** Returns a token as the platform signs it; `algorithm` other than RS256 forges it. */
   signed(claims: Claims, algorithm = "RS256"): string {
     const input = `${encode({ alg: algorithm, kid: this.key.jwk.kid, typ: "JWT" })}.${encode(claims)}`;
@@ -108,7 +105,7 @@ export class Platform {
     return `${input}.${sign("RSA-SHA256", Buffer.from(input), this.key.secret).toString("base64url")}`;
   }
 
-  /** Returns the claims of a launch by "anna", who learns, or "theo", who teaches; `kind` "choose" is deep linking. */
+  /** Returns the claims of a launch by a learner, or by "theo", who teaches; `kind` "choose" is deep linking. */
   claims(user: string, kind: string, nonce: string): Claims {
     const now = Math.floor(Date.now() / 1000);
     const shared = {
@@ -192,7 +189,7 @@ export class Platform {
 
   private members(request: IncomingMessage, response: ServerResponse): void {
     this.admit(request, `${nrps}/scope/contextmembership.readonly`);
-    json(response, { members: [{ user_id: "anna", name: "Anna Example", roles: ["Learner"] }] });
+    json(response, { members: [{ user_id: this.learner, name: "Anna Example", roles: ["Learner"] }] });
   }
 
   private async deepLink(fields: URLSearchParams, response: ServerResponse): Promise<void> {
