@@ -49,7 +49,7 @@ void Outbox::Add(Parcel parcel, absl::Time now) {
   parcel.first = now;
   Save(parcel);
   std::string id = parcel.id;
-  waiting_[std::move(id)] = {std::move(parcel), now, ++versions_};
+  waiting_[std::move(id)] = {std::move(parcel), absl::InfinitePast(), ++versions_};
   changed_.Signal();
 }
 

@@ -42,6 +42,7 @@ async function open(user: string, kind = "open"): Promise<{ page: Page; tool: Fr
   const page = await (await browser.newContext({ viewport: { width: 1100, height: 760 } })).newPage();
   const complaints: string[] = [];
   page.on("console", (message) => isComplaint(message) && complaints.push(message.text()));
+  page.on("pageerror", (error) => complaints.push(String(error)));
   await page.goto(`${platform.url}/course?user=${user}&kind=${kind}`);
   return { page, tool: page.frameLocator("#tool"), complaints };
 }
@@ -106,7 +107,10 @@ test("ATeacherChoosesALessonAndALearnersAnswersBecomeAGrade", async () => {
   const teacher = await open("theo");
   await teacher.tool.getByRole("button", { name: "Next", exact: true }).click();
   await teacher.tool.getByText("Answers of the class", { exact: true }).click();
-  await teacher.tool.getByText(/\d answered, \d right/).first().waitFor();
+  await teacher.tool
+    .getByText(/\d answered, \d right/)
+    .first()
+    .waitFor();
   await teacher.tool.locator("#class-results input[type=checkbox]").check();
   await teacher.tool.getByText("Anna Example").first().waitFor();
   await teacher.page.screenshot({ path: join(outFolder, "lti-teacher.png") });

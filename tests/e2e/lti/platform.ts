@@ -51,6 +51,7 @@ export class Platform {
     const routes: Record<string, Handler> = {
       "/course": (fields, _, response) => this.course(fields, response),
       "/auth": (fields, _, response) => this.auth(fields, response),
+      "/favicon.ico": (_, __, response) => end(response, 204, ""),
       "/keys": (_, __, response) => json(response, { keys: [this.key.jwk] }),
       "/token": (fields, _, response) => this.token(fields, response),
       "/items/1/scores": (fields, request, response) => this.score(fields, request, response),
