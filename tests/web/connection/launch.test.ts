@@ -20,7 +20,7 @@ test("ALaunchIsKeptInItsTabAlone", () => {
   const storage = userStorage(address, own, tab);
   expect(storage).toBe(tab);
   expect(new Identity(storage).respondent).toBe(respondent);
-  expect(new Identity(storage).launched).toBe(true);
+  expect(new Identity(storage).isGraded).toBe(true);
   expect(new Credentials(storage).joinLinks).toEqual([join]);
   expect(new Credentials(storage).token).toBe("");
   expect(own.getItem("phrenic-links")).toBe(null);
@@ -34,6 +34,8 @@ test("ASecondLaunchReplacesTheFirst", () => {
   const storage = userStorage(teacher, memory(), tab);
   expect(new Identity(storage).tokenOf("s")).toBe(respondent);
   expect(new Identity(storage).name).toBe("Teacher");
+  expect(new Identity(storage).launched).toBe(true);
+  expect(new Identity(storage).isGraded).toBe(false);
   expect(new Credentials(storage).joinLinks).toEqual([]);
   expect(new Credentials(storage).token).toBe(join);
   expect(new Identity(storage).respondent).not.toBe(respondent);

@@ -91,7 +91,7 @@ export class StudentView {
       picture: () => parts.tools.pictureForPaper(),
       predicts: () => this.graphs.volumeKey !== undefined,
       print: () => window.print(),
-      named: identity.launched,
+      named: identity.isGraded,
     });
     const open = (query: string) => parts.open(withLessonPlace(query, this.lessons.place.value));
     this.view = new Signal(first);

@@ -26,9 +26,14 @@ export class Identity {
     return secret;
   }
 
-  /** True if a school's platform launched this page: it knows who the user is. */
+  /** True if a school's platform launched this page. */
   get launched(): boolean {
-    return this.storage.getItem("phrenic-launch") === "1";
+    return this.storage.getItem("phrenic-launch") !== null;
+  }
+
+  /** True if the platform knows the user as a learner, whose answers count for the course. */
+  get isGraded(): boolean {
+    return this.storage.getItem("phrenic-launch") === "learner";
   }
 
   /** True if the camera follows that of the participant in control. */

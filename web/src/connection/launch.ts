@@ -15,7 +15,7 @@ const given = [
 export function userStorage(address: URL, own: KeyValueStorage, tab: KeyValueStorage): KeyValueStorage {
   const fragment = new URLSearchParams(address.hash.slice(1));
   if (fragment.get("launch") === "1") {
-    tab.setItem("phrenic-launch", "1");
+    tab.setItem("phrenic-launch", fragment.has("respondent") ? "learner" : "teacher");
     const secret = (field: string) => /^[0-9a-f]{32}$/.exec(fragment.get(field) ?? "")?.[0] ?? "";
     for (const [field, key] of given) tab.setItem(key, secret(field));
     // Teachers control the session under one name.
@@ -23,5 +23,5 @@ export function userStorage(address: URL, own: KeyValueStorage, tab: KeyValueSto
     const session = address.searchParams.get("session") ?? "";
     tab.setItem("phrenic-tokens", JSON.stringify(secret("control") === "" ? {} : { [session]: secret("control") }));
   }
-  return tab.getItem("phrenic-launch") === "1" ? tab : own;
+  return tab.getItem("phrenic-launch") === null ? own : tab;
 }
