@@ -25,11 +25,7 @@ class Tickets {
   std::string Issue(Value value, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_) {
     std::string ticket = NewToken();
     absl::MutexLock lock(&mutex_);
-    const auto is_old = [&](const std::string& id) {
-      const auto found = kept_.find(id);
-      return found == kept_.end() || found->second.expires <= now;
-    };
-    while (!order_.empty() && (order_.size() >= kMostTickets || is_old(order_.front()))) {
+    while (!order_.empty() && (order_.size() >= kMostTickets || IsOver(order_.front(), now))) {
       kept_.erase(order_.front());
       order_.pop_front();
     }
@@ -54,6 +50,12 @@ class Tickets {
     Value value;
     absl::Time expires;
   };
+
+  // True if the ticket was used or has expired.
+  bool IsOver(const std::string& ticket, absl::Time now) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
+    const auto found = kept_.find(ticket);
+    return found == kept_.end() || found->second.expires <= now;
+  }
 
   const absl::Duration lifetime_;
   absl::Mutex mutex_;
