@@ -10,6 +10,7 @@
 #include "absl/base/thread_annotations.h"
 #include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
+#include "server/access/issued_tokens.h"
 #include "server/access/jwt.h"
 #include "server/access/token_file.h"
 
@@ -44,6 +45,9 @@ class Accounts {
   // with "jwt:" stored. Names of both kinds looked alike then: it is an account of the token file if that has one of
   // this name, and otherwise one of the provider's, if there is a provider.
   std::string Qualified(const std::string& stored) const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns a new token for an account of another system (LTI), which Check accepts until `expires` or until the server
+  // ends.
+  std::string Issue(const Account& account, absl::Time expires) { return issued_.Issue(account, expires); }
   // Call it periodically. Returns the error of a changed file or of an address that cannot be read.
   absl::Status Refresh() ABSL_LOCKS_EXCLUDED(mutex_);
 
@@ -56,6 +60,7 @@ class Accounts {
   const AccountOptions options_;
   // Used by the thread that calls Refresh.
   std::filesystem::file_time_type tokens_changed_, keys_changed_;
+  IssuedTokens issued_;
   absl::Time keys_due_;        // when keys from an address are fetched again
   mutable absl::Mutex mutex_;  // guards the pointers; what they point to is immutable
   std::shared_ptr<const TokenTable> tokens_ ABSL_GUARDED_BY(mutex_);

@@ -1,15 +1,16 @@
-// Verifies the signed tokens (JWT, RFC 7519) of an OpenID Connect identity provider with the provider's keys, by cjose.
+// Verifies the signed tokens (JWT, RFC 7519) of an OpenID Connect identity provider with the provider's keys.
 #ifndef PHRENIC_SERVER_ACCESS_JWT_H_
 #define PHRENIC_SERVER_ACCESS_JWT_H_
 
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
+#include <utility>
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "server/access/caller.h"
+#include "server/access/key_set.h"
 
 namespace phrenic::access {
 
@@ -27,9 +28,8 @@ struct JwtOptions {
 // Returns "jwt:ISSUER#SUBJECT". No account of a token file can have such a name.
 std::string JwtAccountName(std::string_view issuer, std::string_view subject);
 
-// Checks a token's header and claims, as JSON text, but not its signature: the parts of JwtKeys::Check that read what a
-// client has written. Thread-safe. UNAUTHENTICATED with the reason.
-absl::Status CheckJwtHeader(std::string_view header);
+// Checks a token's claims, as JSON text, but not its signature: the part of JwtKeys::Check that reads what a client has
+// written. Thread-safe. UNAUTHENTICATED with the reason.
 absl::StatusOr<Account> ReadJwtClaims(std::string_view claims, const JwtOptions& options, absl::Time now);
 
 // Immutable and thread-safe. Accounts shares one between calls and replaces it when the keys change.
@@ -39,9 +39,6 @@ class JwtKeys {
   // errors of Fetch. INVALID_ARGUMENT also without an issuer or an audience. Symmetric keys are ignored: anyone who can
   // read a public set could sign with them.
   static absl::StatusOr<std::shared_ptr<const JwtKeys>> Read(const JwtOptions& options);
-  JwtKeys(const JwtKeys&) = delete;
-  JwtKeys& operator=(const JwtKeys&) = delete;
-  ~JwtKeys();
 
   // Returns the account that a token names. UNAUTHENTICATED, with the reason, if the signature is not by a key of the
   // set with RS, PS or ES (RFC 7518 section 3.1), if the header has extensions that must be understood ("crit", RFC
@@ -52,13 +49,11 @@ class JwtKeys {
   absl::StatusOr<Account> Check(std::string_view token, absl::Time now) const;
 
  private:
-  explicit JwtKeys(JwtOptions options);
-  // Returns the claims as JSON text if the signature is valid.
-  absl::StatusOr<std::string> VerifiedClaims(std::string_view token) const;
+  JwtKeys(JwtOptions options, std::shared_ptr<const KeySet> keys)
+      : options_(std::move(options)), keys_(std::move(keys)) {}
 
   const JwtOptions options_;
-  struct Key;
-  std::vector<std::unique_ptr<Key>> keys_;  // RSA and EC, in the order of the set
+  const std::shared_ptr<const KeySet> keys_;
 };
 
 }  // namespace phrenic::access

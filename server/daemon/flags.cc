@@ -163,6 +163,22 @@ void AddAccess(CLI::App& app, Flags& flags) {
   group.Add("audit", options.audit_file, "Audit log file, rotated at 16 MiB");
 }
 
+void AddLti(CLI::App& app, Flags& flags) {
+  lti::Options& lti = flags.options.lti;
+  Group group(app, "Learning platforms");
+  group.Add("lti-url", lti.url, "Address by which browsers reach this server, such as https://phrenic.example.org");
+  group
+      .Add("lti-platform", lti.platforms,
+           "Learning platforms (LTI 1.3), each as \"issuer=URL client=ID deployment=ID login=URL token=URL keys=URL\", "
+           "with \"audience=TEXT\" and further \"deployment=ID\" and \"origin=URL\" where the platform needs them")
+      ->delimiter(',');
+  group.Add("lti-key", lti.key_file,
+            "File of this server's private keys for platforms, made if there is none; empty: lti-key.json in --store");
+  group.Add("xapi-url", lti.lrs_url, "Address of a store of learning records (xAPI), without /statements");
+  group.Add("xapi-user", lti.lrs_user, "Its user name");
+  group.Add("xapi-password", lti.lrs_password_file, "File with its password");
+}
+
 void AddCluster(CLI::App& app, Flags& flags) {
   cluster::ClusterOptions& cluster = flags.options.cluster;
   Group group(app, "Cluster");
@@ -179,6 +195,7 @@ void AddCluster(CLI::App& app, Flags& flags) {
 void AddFlags(CLI::App& app, Flags& flags) {
   AddAddresses(app, flags);
   AddAccess(app, flags);
+  AddLti(app, flags);
   AddLimits(app, flags);
   AddCluster(app, flags);
 }
@@ -187,6 +204,9 @@ service::ServerOptions OptionsOf(const Flags& flags) {
   service::ServerOptions options = flags.options;
   if (options.store_dir == "none") options.store_dir.clear();
   if (options.cluster.advertise.empty()) options.cluster.advertise = options.listen;
+  if (options.lti.key_file.empty() && !options.store_dir.empty()) {
+    options.lti.key_file = options.store_dir + "/lti-key.json";
+  }
   options.max_message_bytes = flags.message_mb << 20;
   options.limits.upload_bytes = std::int64_t{flags.upload_mb} << 20;
   options.limits.uploads_bytes = std::int64_t{flags.uploads_mb} << 20;

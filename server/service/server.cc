@@ -24,6 +24,8 @@
 #include "server/service/fit_service.h"
 #include "server/service/frame_service.h"
 #include "server/service/health_service.h"
+#include "server/service/lti_classroom.h"
+#include "server/service/lti_forms.h"
 #include "server/service/memory_trimmer.h"
 #include "server/service/net/grpc_listener.h"
 #include "server/service/periodic_task.h"
@@ -101,6 +103,7 @@ struct Server::Parts {
     std::unique_ptr<access::AuditLog> audit;
     std::unique_ptr<store::Store> store;
     std::unique_ptr<cluster::Cluster> cluster;
+    std::unique_ptr<lti::ToolKey> lti_key;  // null: no learning platforms
   };
 
   // Opens accounts and audit log, the store and the connection to Redis.
@@ -138,6 +141,11 @@ struct Server::Parts {
         calls(guard, call_limits),
         forwarding_limits(options.max_calls, RequestTime(options),
                           static_cast<std::size_t>(options.max_message_bytes)) {
+    if (opened.lti_key != nullptr) {
+      lti = std::make_unique<LtiForms>(*lti::ReadSettings(options.lti), std::move(opened.lti_key),
+                                       options.web_root + "/lessons", classroom, store.get());
+      session_service.set_listener(lti->listener());
+    }
     AddCalls();
     table.set_account_names([this](const std::string& account) { return guard.AccountOf(account); });
   }
@@ -185,6 +193,8 @@ struct Server::Parts {
   FitService fit_service;
   ServerService server_service;
   HealthService health_service;
+  LtiClassroom classroom{table, *accounts};
+  std::unique_ptr<LtiForms> lti;  // null: no learning platforms
   CallLimits call_limits;
   CallTable calls;
   std::unique_ptr<GrpcListener> listener;
@@ -213,6 +223,11 @@ absl::StatusOr<Server::Parts::Opened> Server::Parts::Open(const ServerOptions& o
     auto store = store::Store::Open(options.store_dir);
     if (!store.ok()) return store.status();
     opened.store = *std::move(store);
+  }
+  if (options.lti.used()) {
+    auto key = lti::ToolKey::Open(options.lti.key_file);
+    if (!key.ok()) return key.status();
+    opened.lti_key = *std::move(key);
   }
   if (!options.cluster.redis.empty()) {
     cluster::ClusterOptions joining = options.cluster;
@@ -263,6 +278,7 @@ absl::Status Server::Parts::Restore(const ServerOptions& options) {
   lost = *std::move(restored);
   for (const auto& [id, how] : table.carried_over()) spdlog::warn("session {}: {}", id, how);
   study_service.Restore(*records, lost);
+  if (lti != nullptr) lti->tool().Restore(*records, lost);
   exports.Restore(
       *records, models, [this](const std::string& account) { return guard.AccountOf(account); }, lost);
   return absl::OkStatus();
@@ -331,7 +347,7 @@ absl::Status Server::Parts::Serve(const ServerOptions& options) {
 
 absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
   if (options.web.empty()) return absl::OkStatus();
-  const WebGateway::Options web_options = {
+  WebGateway::Options web_options = {
       .address = options.web,
       .settings = {
           .root = options.web_root,
@@ -348,6 +364,8 @@ absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
               }},
       .max_connections = static_cast<std::size_t>(options.max_connections),
       .tls = options.tls};
+  web_options.settings.framers = options.allowed_origins;
+  if (lti != nullptr) lti->AddTo(web_options.settings);
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
   auto gateway = WebGateway::Start(web_options, entry_server().InProcessChannel(arguments));
@@ -403,6 +421,7 @@ void Server::Shutdown() {
   parts_->table.Close(absl::UnavailableError("the server is shutting down"));
   if (parts_->cluster != nullptr) parts_->cluster->Leave();
   if (parts_->web != nullptr) parts_->web->Shutdown();
+  if (parts_->lti != nullptr) parts_->lti->Shutdown();
   if (parts_->forwarding_server != nullptr) {
     parts_->forwarding_server->Shutdown(std::chrono::system_clock::now() + kDrainTime);
   }

@@ -81,6 +81,23 @@ absl::Status CheckCluster(const ServerOptions& options) {
       "--advertise: pass the HOST:PORT at which the cluster's other servers reach --listen");
 }
 
+// Roles have an effect on a server with accounts alone; logins are kept in the memory of one server.
+absl::Status CheckLti(const ServerOptions& options) {
+  if (!options.lti.used()) {
+    const bool url = !options.lti.url.empty(), lrs = !options.lti.lrs_url.empty();
+    if (!url && !lrs) return absl::OkStatus();
+    return absl::InvalidArgumentError(absl::StrCat(url ? "--lti-url" : "--xapi-url", ": needs --lti-platform"));
+  }
+  if (!options.accounts.used()) {
+    return absl::InvalidArgumentError(
+        "--lti-platform: needs accounts, since without them everybody may do everything: pass --tokens FILE");
+  }
+  if (!options.cluster.redis.empty()) {
+    return absl::InvalidArgumentError("--lti-platform: not with --cluster; run a server of its own for the platform");
+  }
+  return lti::ReadSettings(options.lti).status();
+}
+
 }  // namespace
 
 absl::Status CheckOptions(const ServerOptions& options) {
@@ -89,6 +106,7 @@ absl::Status CheckOptions(const ServerOptions& options) {
   if (absl::Status status = CheckGuard(options); !status.ok()) return status;
   if (absl::Status status = CheckHosts(options); !status.ok()) return status;
   if (absl::Status status = CheckCluster(options); !status.ok()) return status;
+  if (absl::Status status = CheckLti(options); !status.ok()) return status;
   return CheckFolders(options);
 }
 

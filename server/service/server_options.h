@@ -9,6 +9,7 @@
 #include "absl/status/status.h"
 #include "server/access/accounts.h"
 #include "server/cluster/cluster.h"
+#include "server/lti/platform.h"
 #include "server/record/spool_file.h"
 #include "server/schema/places.h"
 #include "server/service/net/tls.h"
@@ -44,6 +45,7 @@ struct ServerOptions {
   bool unguarded_listen = false;     // allows other machines to reach `listen` without a proxy that guards it
   access::AccountOptions accounts;   // empty: every caller may do everything
   std::string audit_file;            // empty: no audit log
+  lti::Options lti;                  // empty: not a tool of learning platforms
   cluster::ClusterOptions cluster;   // empty: not in a cluster
 };
 

@@ -334,6 +334,7 @@ grpc::Status SessionService::SubmitAnswer(grpc::CallbackServerContext* context, 
   const auto attempts = call->session->answer_book().Submit(*request, SourceOf(call->caller));
   if (!attempts.ok()) return ToGrpc(attempts.status());
   response->set_attempts(*attempts);
+  if (listener_.answered) listener_.answered(*request);
   return grpc::Status::OK;
 }
 
@@ -341,7 +342,9 @@ grpc::Status SessionService::ListAnswers(grpc::CallbackServerContext* context, c
                                          v1::ListAnswersResponse* response) {
   const auto session = AdmitTeacher(*context, *request, request->include_names());
   if (!session.ok()) return ToGrpc(session.status());
-  *response = (*session)->answer_book().List(request->lesson(), request->include_names());
+  std::map<std::string, std::string> known;
+  if (request->include_names() && listener_.names) known = listener_.names(request->session_id());
+  *response = (*session)->answer_book().List(request->lesson(), request->include_names(), known);
   return grpc::Status::OK;
 }
 

@@ -2,6 +2,11 @@
 #ifndef PHRENIC_SERVER_SERVICE_SESSION_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_SESSION_SERVICE_H_
 
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+
 #include "phrenic/v1/session.pb.h"
 #include "server/service/calls/access_guard.h"
 #include "server/service/calls/call_table.h"
@@ -24,6 +29,15 @@ class SessionService final {
   // All outlive the service.
   SessionService(session::Table& table, AccessGuard& guard, const PageTokens& page_tokens)
       : table_(table), guard_(guard), page_tokens_(page_tokens) {}
+
+  // What hears of answers and knows the names of those who answer. Both are thread-safe; null: nothing does.
+  struct Listener {
+    std::function<void(const v1::SubmitAnswerRequest& answer)> answered;  // returns at once
+    // Returns names by the secrets of respondents; may block for some seconds.
+    std::function<std::map<std::string, std::string>(const std::string& session)> names;
+  };
+  // Call it before the first call is served.
+  void set_listener(Listener listener) { listener_ = std::move(listener); }
 
   // Adds the methods to the table. The service outlives it.
   void AddTo(CallTable& calls);
@@ -98,6 +112,7 @@ class SessionService final {
   session::Table& table_;
   AccessGuard& guard_;
   const PageTokens& page_tokens_;
+  Listener listener_;                    // constant while calls are served
   FairShare large_reads_{LargeReads()};  // of GetState
 };
 

@@ -22,9 +22,14 @@ export class Server {
     private readonly flags: string[],
   ) {}
 
-  /** Starts a server with a playing session of `scene`; "none" for no session. */
-  static async start(scene = "thorax", flags: string[] = []): Promise<Server> {
-    const server = new Server(await freePort(), await freePort(), scene, flags);
+  /**
+   * Starts a server with a playing session of `scene`; "none" for no session. `flags` may depend on the address of the
+   * page.
+   */
+  static async start(scene = "thorax", flags: string[] | ((url: string) => string[]) = []): Promise<Server> {
+    const [listen, web] = [await freePort(), await freePort()];
+    const words = typeof flags === "function" ? flags(`http://127.0.0.1:${web}`) : flags;
+    const server = new Server(listen, web, scene, words);
     await server.restart();
     return server;
   }

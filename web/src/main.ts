@@ -3,8 +3,10 @@ import { App } from "./app/app";
 import { createApi, errorText } from "./connection/api";
 import { Credentials, credentialsInterceptor, storeJoinLink } from "./connection/credentials";
 import { Identity, identityInterceptor } from "./connection/identity";
+import { userStorage } from "./connection/launch";
 import { routingInterceptor } from "./connection/routing";
 import { elementById, make } from "./dom/elements";
+import { ownStorage, tabStorage } from "./dom/storage";
 import { SessionChooser } from "./panels/session/session_chooser";
 import { signIn } from "./panels/session/sign_in";
 import { chooseSession } from "./session/choose_session";
@@ -22,8 +24,10 @@ window.addEventListener("pageshow", () => (leaving = false));
 const fetchKeepingAlive: typeof fetch = (input, init) => fetch(input, { ...init, keepalive: leaving });
 
 // The page and the services have the same origin.
-const identity = new Identity(localStorage);
-const credentials = new Credentials(localStorage);
+const here = new URL(location.href);
+const storage = userStorage(here, ownStorage, tabStorage);
+const identity = new Identity(storage);
+const credentials = new Credentials(storage);
 const interceptors = [identityInterceptor(identity), credentialsInterceptor(credentials), routingInterceptor()];
 const api = createApi(createGrpcWebTransport({ baseUrl: location.origin, fetch: fetchKeepingAlive, interceptors }));
 
@@ -66,14 +70,16 @@ const secondSessionId = here.searchParams.get("beside") ?? undefined;
 const embedded = here.searchParams.has("embed");
 document.body.classList.toggle("embedded", embedded);
 loading.replaceChildren(t("Loading the scene…"));
-const view = embedded ? "expert" : pageViewOf(here, localStorage);
+const view = embedded ? "expert" : pageViewOf(here, ownStorage);
 const shown = secondSessionId === undefined && !embedded ? address(sessionId) : here.search;
 const lesson = lessonPlaceOf(here);
 history.replaceState(null, "", withPageView(shown, view));
 elementById("open-full").setAttribute("href", address(sessionId));
 try {
   const viewNow = () => (document.body.classList.contains("student") ? "student" : "expert");
-  const open = (query: string) => location.assign(withPageView(query, viewNow()));
+  // A launch goes on in the next page, also where the browser keeps nothing.
+  const launch = identity.launched ? here.hash : "";
+  const open = (query: string) => location.assign(withPageView(query, viewNow()) + launch);
   const subject = { sessionId, secondSessionId, view, lesson, open };
   new App(api, subject, chooser, identity, systemClock).start();
 } catch (error) {

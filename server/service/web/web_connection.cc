@@ -133,6 +133,7 @@ void WebConnection::OnHead() {
 std::optional<Refusal> WebConnection::Judge(const HttpRequestHead& head) {
   if (auto refusal = CheckFraming(head)) return refusal;
   if (auto refusal = CheckHost(head, shared_.hosts, local_, stream_.certificate())) return refusal;
+  if (IsForm(View(head.target()))) return JudgeForm(head);
   const std::string_view origin = View(head[http::field::origin]);
   if (!IsAllowedOrigin(origin, View(head[http::field::host]), settings_.allowed_origins)) {
     return Refusal{http::status::forbidden,
@@ -151,10 +152,25 @@ std::optional<Refusal> WebConnection::Judge(const HttpRequestHead& head) {
                  std::string(call.status().message())};
 }
 
+bool WebConnection::IsForm(std::string_view target) const {
+  return settings_.form != nullptr && target.starts_with("/lti/");
+}
+
+std::optional<Refusal> WebConnection::JudgeForm(const HttpRequestHead& head) {
+  if (head.method() == http::verb::get) return std::nullopt;
+  if (head.method() != http::verb::post) {
+    return Refusal{http::status::method_not_allowed, "the method must be GET or POST"};
+  }
+  if (View(head[http::field::content_type]).starts_with("application/x-www-form-urlencoded")) return std::nullopt;
+  return Refusal{http::status::unsupported_media_type,
+                 "the body must be a form: Content-Type application/x-www-form-urlencoded"};
+}
+
 std::optional<Refusal> WebConnection::AdmitBody(const HttpRequestHead& head) {
   body_limit_ = kSmallBodyBytes;
   const auto length = parser_->content_length();
   if (length.has_value() ? *length <= kSmallBodyBytes : !parser_->chunked()) return std::nullopt;
+  if (IsForm(View(head.target()))) return TooLong(true, kSmallBodyBytes);
   const auto caller = settings_.known ? settings_.known(CredentialsOf(head)) : "";
   if (caller.has_value()) {
     body_limit_ = LimitOf(IsGrpcWebText(View(head[http::field::content_type])), settings_.max_message_bytes);
@@ -205,6 +221,7 @@ void WebConnection::Reject(const Refusal& refusal) {
 
 void WebConnection::Handle(const Request& request) {
   waiting_since_ = std::chrono::steady_clock::time_point::max().time_since_epoch().count();
+  if (IsForm(View(request.target()))) return HandleForm(request);
   if (request.method() == http::verb::options) return Preflight(request);
   if (request.method() == http::verb::post) return StartCall(parser_->release());
   HandleGet(request);
@@ -222,19 +239,31 @@ WebSettings::Credentials WebConnection::CredentialsOf(const HttpRequestHead& hea
   return {View(head[http::field::authorization]), View(head["x-join"])};
 }
 
-void WebConnection::SendPage(const Request& request, const WebSettings::Page& page) {
-  http::response<http::string_body> response(http::int_to_status(page.status), request.version(), page.text);
+void WebConnection::SendPage(bool with_body, const WebSettings::Page& page) {
+  http::response<http::string_body> response(http::int_to_status(page.status), 11, page.text);
+  for (const auto& [name, value] : page.headers) response.insert(name, value);
   response.set(http::field::content_type, page.type);
   response.set(http::field::cache_control, "no-store");
   response.prepare_payload();
-  if (request.method() == http::verb::head) response.body().clear();
+  if (!with_body) response.body().clear();
   Send(std::move(response));
+}
+
+void WebConnection::HandleForm(const Request& request) {
+  stream_.tcp().expires_never();  // the answer has its own limits of time
+  settings_.form({.post = request.method() == http::verb::post,
+                  .target = std::string(View(request.target())),
+                  .body = request.body(),
+                  .cookies = std::string(View(request[http::field::cookie]))},
+                 [self = shared_from_this()](const WebSettings::Page& page) {
+                   net::dispatch(self->stream_.get_executor(), [self, page] { self->SendPage(true, page); });
+                 });
 }
 
 void WebConnection::HandleGet(const Request& request) {
   if (settings_.page) {
     const auto page = settings_.page(View(request.target()), CredentialsOf(request));
-    if (page.has_value()) return SendPage(request, *page);
+    if (page.has_value()) return SendPage(request.method() != http::verb::head, *page);
   }
   const auto file = FindStaticFile(settings_.root, View(request.target()), View(request[http::field::accept_encoding]));
   if (!file.ok()) {
@@ -247,7 +276,7 @@ void WebConnection::HandleGet(const Request& request) {
 void WebConnection::SendFile(const Request& request, const StaticFile& file) {
   if (View(request[http::field::if_none_match]) == file.etag) {
     http::response<http::empty_body> response(http::status::not_modified, request.version());
-    SetFileHeaders(file, settings_.allowed_origins, response);
+    SetFileHeaders(file, settings_.framers, response);
     return Send(std::move(response));
   }
   beast::error_code error;
@@ -257,13 +286,13 @@ void WebConnection::SendFile(const Request& request, const StaticFile& file) {
   const std::uint64_t size = body.size();
   if (request.method() == http::verb::head) {
     http::response<http::empty_body> response(http::status::ok, request.version());
-    SetFileHeaders(file, settings_.allowed_origins, response);
+    SetFileHeaders(file, settings_.framers, response);
     response.content_length(size);
     return Send(std::move(response));
   }
   http::response<http::file_body> response(std::piecewise_construct, std::make_tuple(std::move(body)),
                                            std::make_tuple(http::status::ok, request.version()));
-  SetFileHeaders(file, settings_.allowed_origins, response);
+  SetFileHeaders(file, settings_.framers, response);
   response.content_length(size);
   Send(std::move(response));
 }

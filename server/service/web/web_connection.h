@@ -46,10 +46,22 @@ struct WebSettings {
   struct Page {
     unsigned status = 200;  // HTTP status code
     std::string type, text;
+    std::vector<std::pair<std::string, std::string>> headers = {};  // further ones
+  };
+  // A request to a form's target: GET, or POST of an application/x-www-form-urlencoded body of 64 KiB at most. Pages of
+  // any origin may send it.
+  struct Form {
+    bool post = false;
+    std::string target, body, cookies;
   };
   // Returns the generated page of a target such as "/healthz"; nullopt if the target is a static file. Thread-safe.
   // Runs on the connection's strand, so it must be short. Null: there are only static files.
   std::function<std::optional<Page>(std::string_view target, const Credentials& credentials)> page;
+  // Answers the requests to targets that begin with "/lti/"; calls `done` once, on any thread, before the gateway is
+  // destroyed. Returns at once. Null: there are none, and their targets are as all others.
+  std::function<void(Form form, std::function<void(Page page)> done)> form = nullptr;
+  // Origins that may frame the viewer, beside allowed_origins.
+  std::vector<std::string> framers = {};
   // Returns under which name the sender of a request has its part of the budget for bodies, empty for its IP address;
   // nullopt if it is not known, so that its bodies must be small. Null: everybody is known. Thread-safe. Called for
   // bodies above 64 KiB.
@@ -116,10 +128,15 @@ class WebConnection final : public std::enable_shared_from_this<WebConnection> {
   void Reject(const Refusal& refusal);
   // Answers OPTIONS by Preflight, POST by a call, GET and HEAD by a page or a file.
   void Handle(const Request& request);
+  // True if settings_.form answers the target.
+  bool IsForm(std::string_view target) const;
+  // Judge for a form.
+  std::optional<Refusal> JudgeForm(const HttpRequestHead& head);
+  void HandleForm(const Request& request);
   // Asks settings_.page first.
   void HandleGet(const Request& request);
   // Sends no body for HEAD. Pages are not cached.
-  void SendPage(const Request& request, const WebSettings::Page& page);
+  void SendPage(bool with_body, const WebSettings::Page& page);
   // 304 if the browser has this version. Reads the file in parts while it is sent.
   void SendFile(const Request& request, const StaticFile& file);
   // Answers a CORS preflight request (Fetch standard section 3.3.6).

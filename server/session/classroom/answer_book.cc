@@ -92,11 +92,13 @@ absl::StatusOr<int> AnswerBook::Submit(const v1::SubmitAnswerRequest& request, c
   return answer.attempts();
 }
 
-v1::ListAnswersResponse AnswerBook::List(const std::string& lesson, bool include_names) const {
+v1::ListAnswersResponse AnswerBook::List(const std::string& lesson, bool include_names,
+                                         const std::map<std::string, std::string>& known) const {
   const absl::MutexLock lock(&mutex_);
   std::vector<std::string> names(respondents_.size() + 1);  // by number
   for (const auto& [secret, respondent] : respondents_) {
-    names[static_cast<std::size_t>(respondent.number)] = respondent.name;
+    const auto told = known.find(secret);
+    names[static_cast<std::size_t>(respondent.number)] = told == known.end() ? respondent.name : told->second;
   }
   v1::ListAnswersResponse response;
   response.set_respondents(static_cast<int>(respondents_.size()));

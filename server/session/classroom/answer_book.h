@@ -36,8 +36,10 @@ class AnswerBook {
   // or for a new respondent past those of its source. Requires: the name is empty or passes CheckName (control.h).
   absl::StatusOr<int> Submit(const v1::SubmitAnswerRequest& request, const AnswerSource& source = {})
       ABSL_LOCKS_EXCLUDED(mutex_);
-  // Returns the answers to the lesson's questions, or all if `lesson` is empty; names only if wanted.
-  v1::ListAnswersResponse List(const std::string& lesson, bool include_names) const ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns the answers to the lesson's questions, or all if `lesson` is empty; names only if wanted. `known` has names
+  // by the secrets of respondents, which go before those that the respondents gave.
+  v1::ListAnswersResponse List(const std::string& lesson, bool include_names,
+                               const std::map<std::string, std::string>& known = {}) const ABSL_LOCKS_EXCLUDED(mutex_);
   // Forgets all answers and respondents.
   void Clear() ABSL_LOCKS_EXCLUDED(mutex_);
 

@@ -2,6 +2,7 @@ import { create } from "@bufbuild/protobuf";
 import type { LayerStyles } from "../appearance/layer_styles";
 import type { Identity } from "../connection/identity";
 import { elementById } from "../dom/elements";
+import { ownStorage } from "../dom/storage";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { type Lesson, type LessonStep, LessonStepSchema, type LessonView } from "../gen/phrenic/v1/lesson_pb";
 import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
@@ -91,6 +92,7 @@ export class StudentView {
       picture: () => parts.tools.pictureForPaper(),
       predicts: () => this.graphs.volumeKey !== undefined,
       print: () => window.print(),
+      named: identity.isGraded,
     });
     const open = (query: string) => parts.open(withLessonPlace(query, this.lessons.place.value));
     this.view = new Signal(first);
@@ -126,7 +128,7 @@ export class StudentView {
   /** Changes between the student and the expert view; the browser and the address remember it. */
   toggle(): void {
     const view = this.view.value === "student" ? "expert" : "student";
-    rememberPageView(view, localStorage);
+    rememberPageView(view, ownStorage);
     history.replaceState(null, "", withPageView(location.search, view));
     this.view.set(view);
     if (view === "student") this.showComparison();

@@ -18,12 +18,22 @@ export class Identity {
 
   /** The secret that identifies this browser among those who answer a lesson's questions. */
   get respondent(): string {
-    const known = this.storage.getItem("phrenic-respondent");
-    if (known !== null) return known;
+    const known = this.storage.getItem("phrenic-respondent") ?? "";
+    if (known !== "") return known;
     const bytes = [...crypto.getRandomValues(new Uint8Array(16))];
     const secret = bytes.map((byte) => byte.toString(16).padStart(2, "0")).join("");
     this.storage.setItem("phrenic-respondent", secret);
     return secret;
+  }
+
+  /** True if a school's platform launched this page. */
+  get launched(): boolean {
+    return this.storage.getItem("phrenic-launch") !== null;
+  }
+
+  /** True if the platform knows the user as a learner, whose answers count for the course. */
+  get isGraded(): boolean {
+    return this.storage.getItem("phrenic-launch") === "learner";
   }
 
   /** True if the camera follows that of the participant in control. */

@@ -155,6 +155,7 @@ function card(files: Record<string, unknown>) {
     own,
     picture: async () => null,
     predicts: () => true,
+    named: false,
     print: () => undefined,
     keep: async () => create(LessonStepSchema, { preset: "deep", view: { cut: "coronal", cutPosition: 0.4 } }),
   };

@@ -36,6 +36,8 @@ export interface LessonActions {
   predicts(): boolean;
   /** Prints the page. */
   print(): void;
+  /** True if a school's platform knows who answers. */
+  named: boolean;
 }
 
 /** The list of lessons, the lesson that is played, and the form that makes one. */
@@ -118,7 +120,8 @@ export class LessonCard {
     const title = make("h3", { tabIndex: -1 }, step.title);
     const task = step.task === "" ? [] : [make("p", { className: "task" }, make("b", {}, t("Try: ")), step.task)];
     const answered = (answer: GivenAnswer) => this.send(place.step, AnswerPhase.UNSPECIFIED, answer);
-    const question = step.question === undefined ? [] : [questionForm(step.question, answered), answerNote()];
+    const question =
+      step.question === undefined ? [] : [questionForm(step.question, answered), answerNote(this.actions.named)];
     const caption = make("p", { className: "caption" }, step.caption);
     const parts = [title, caption, ...task, ...question, ...this.testFirst(lesson, place)];
     const buttons = [this.buttons(place), this.printButton()];
@@ -229,7 +232,9 @@ export class LessonCard {
   }
 }
 
-function answerNote(): HTMLElement {
-  const words = t("Your teacher can see your answer, with your name only if you gave one.");
+function answerNote(named: boolean): HTMLElement {
+  const words = named
+    ? t("Your teacher can see your answer with your name, and it counts for your course.")
+    : t("Your teacher can see your answer, with your name only if you gave one.");
   return make("p", { className: "faint" }, words);
 }

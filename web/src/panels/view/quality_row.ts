@@ -1,5 +1,6 @@
 import { make } from "../../dom/elements";
 import { labelledRow } from "../../dom/rows";
+import { ownStorage } from "../../dom/storage";
 import { Signal } from "../../state/signal";
 import { type Quality, qualities } from "../../viewer/quality";
 import { t } from "../../language/translate";
@@ -16,7 +17,7 @@ const labels: [QualityChoice, string][] = [
 ];
 
 /** Returns the quality that the browser remembers, and remembers it from now on. */
-export function rememberedQuality(memory: Pick<Storage, "getItem" | "setItem"> = localStorage): Signal<QualityChoice> {
+export function rememberedQuality(memory: Pick<Storage, "getItem" | "setItem"> = ownStorage): Signal<QualityChoice> {
   const quality = new Signal<QualityChoice>(qualities.find((each) => each === memory.getItem(key)));
   quality.subscribe((chosen) => memory.setItem(key, chosen ?? "automatic"));
   return quality;

@@ -1,0 +1,152 @@
+#include "server/lti/grading.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "server/crypto/secret.h"
+#include "server/crypto/sha256.h"
+#include "server/lti/xapi.h"
+
+namespace phrenic::lti {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostLearners = 10'000, kMostAssignments = 100;
+
+std::string ResponseOf(const v1::SubmitAnswerRequest& answer) {
+  return answer.has_number() ? absl::StrCat(answer.number()) : absl::StrJoin(answer.choices(), "[,]");
+}
+
+std::string IssuerOf(const Learner& learner) { return learner.platform.substr(0, learner.platform.find(' ')); }
+
+void AddStatement(Outbox* statements, const Deed& deed, absl::Time now) {
+  if (statements == nullptr) return;
+  json statement = StatementOf(deed, now);
+  std::string id = statement["id"].get<std::string>();
+  statements->Add({.id = std::move(id), .receiver = "", .address = "", .content = std::move(statement)}, now);
+}
+
+}  // namespace
+
+std::string KeyOf(const Platform& platform) { return absl::StrCat(platform.issuer, " ", platform.client_id); }
+
+void Grading::Save(const Learner& learner) const { records_.Put(KeyOf(learner), WriteLearner(learner)); }
+
+void Grading::DropOldest() {
+  const auto oldest = std::min_element(learners_.begin(), learners_.end(),
+                                       [](const auto& a, const auto& b) { return a.second.seen < b.second.seen; });
+  records_.Remove(oldest->first);
+  by_respondent_.erase(oldest->second.respondent);
+  learners_.erase(oldest);
+}
+
+std::string Grading::Enter(const Platform& platform, const Launch& launch, const std::string& course,
+                           const std::string& session, absl::Time now) {
+  Learner one{.platform = KeyOf(platform), .course = course, .user = launch.user};
+  const std::string key = KeyOf(one);
+  Deed deed{Deed::Verb::kLaunched, platform.issuer, launch.user, parts_.url, launch.lesson, launch.lesson};
+  std::string respondent;
+  {
+    absl::MutexLock lock(&mutex_);
+    if (!learners_.contains(key) && learners_.size() >= kMostLearners) DropOldest();
+    Learner& learner = learners_.try_emplace(key, one).first->second;
+    if (learner.respondent.empty()) learner.respondent = NewToken();
+    by_respondent_[learner.respondent] = key;
+    learner.session = session;
+    learner.seen = now;
+    const bool known = learner.assignments.contains(launch.lesson);
+    if (!launch.lesson.empty() && (known || learner.assignments.size() < kMostAssignments)) {
+      learner.assignments[launch.lesson].line_item = launch.line_item;
+    }
+    Save(learner);
+    respondent = learner.respondent;
+  }
+  if (!launch.lesson.empty()) AddStatement(parts_.statements, deed, now);
+  return respondent;
+}
+
+void Grading::ReportAnswer(const Learner& learner, const v1::SubmitAnswerRequest& answer, const v1::Lesson& lesson,
+                           bool right, absl::Time now) const {
+  Deed deed{Deed::Verb::kAnswered, IssuerOf(learner),
+            learner.user,          parts_.url,
+            answer.lesson(),       lesson.steps(answer.step() - 1).question().words()};
+  deed.step = answer.step();
+  deed.response = ResponseOf(answer);
+  deed.right = right;
+  AddStatement(parts_.statements, deed, now);
+}
+
+void Grading::ReportScore(const Learner& learner, const std::string& name, const v1::Lesson& lesson,
+                          absl::Time now) const {
+  const Learner::Assignment& assignment = learner.assignments.at(name);
+  const int questions = QuestionCount(lesson);
+  if (static_cast<int>(assignment.right.size()) < questions) return;
+  const auto score = static_cast<int>(
+      std::count_if(assignment.right.begin(), assignment.right.end(), [](const auto& each) { return each.second; }));
+  Deed deed{Deed::Verb::kCompleted, IssuerOf(learner), learner.user, parts_.url, name, lesson.title()};
+  deed.score = score;
+  deed.most = questions;
+  AddStatement(parts_.statements, deed, now);
+  if (assignment.line_item.empty() || parts_.scores == nullptr) return;
+  json content = {{"userId", learner.user},
+                  {"scoreGiven", score},
+                  {"scoreMaximum", questions},
+                  {"activityProgress", "Completed"},
+                  {"gradingProgress", "FullyGraded"},
+                  {"timestamp", absl::FormatTime("%Y-%m-%dT%H:%M:%E6SZ", now, absl::UTCTimeZone())}};
+  parts_.scores->Add({.id = Sha256Hex(absl::StrCat(KeyOf(learner), " ", name)),
+                      .receiver = learner.platform,
+                      .address = assignment.line_item,
+                      .content = std::move(content)},
+                     now);
+}
+
+bool Grading::Knows(const std::string& respondent) const {
+  absl::MutexLock lock(&mutex_);
+  return by_respondent_.contains(respondent);
+}
+
+void Grading::Answered(const v1::SubmitAnswerRequest& answer, absl::Time now) {
+  if (answer.phase() == v1::ANSWER_PHASE_BEFORE || !Knows(answer.respondent())) return;
+  const auto lesson = parts_.lessons->Find(answer.lesson());
+  if (!lesson.ok()) return;
+  const auto right = IsRight(*lesson, answer);
+  if (!right.ok()) return;
+  absl::MutexLock lock(&mutex_);
+  const auto key = by_respondent_.find(answer.respondent());
+  if (key == by_respondent_.end()) return;
+  Learner& learner = learners_.at(key->second);
+  const auto assignment = learner.assignments.find(answer.lesson());
+  if (learner.session != answer.session_id() || assignment == learner.assignments.end()) return;
+  ReportAnswer(learner, answer, *lesson, *right, now);
+  const auto before = assignment->second.right.find(answer.step());
+  const bool same = before != assignment->second.right.end() && before->second == *right;
+  if (same) return;
+  assignment->second.right[answer.step()] = *right;
+  Save(learner);
+  ReportScore(learner, answer.lesson(), *lesson, now);
+}
+
+std::map<std::string, std::string> Grading::Users(const std::string& session) const {
+  std::map<std::string, std::string> users;
+  absl::MutexLock lock(&mutex_);
+  for (const auto& [key, learner] : learners_) {
+    if (learner.session == session) users[learner.respondent] = learner.user;
+  }
+  return users;
+}
+
+absl::Status Grading::Restore(const std::string& bytes) {
+  auto learner = ReadLearner(bytes);
+  if (!learner.ok()) return learner.status();
+  absl::MutexLock lock(&mutex_);
+  if (learners_.size() >= kMostLearners) return absl::OkStatus();
+  const std::string key = KeyOf(*learner);
+  by_respondent_[learner->respondent] = key;
+  learners_[key] = *std::move(learner);
+  return absl::OkStatus();
+}
+
+}  // namespace phrenic::lti
