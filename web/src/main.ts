@@ -35,8 +35,7 @@ function address(sessionId: string): string {
   return `?${new URLSearchParams({ session: sessionId })}`;
 }
 
-const here = new URL(location.href);
-await openLanguage(languageOf(here, localStorage, navigator.languages), fetchJson);
+await openLanguage(languageOf(here, ownStorage, navigator.languages), fetchJson);
 
 const chooser = new SessionChooser(api, (sessionId) => location.assign(address(sessionId)));
 document.body.append(chooser.element);

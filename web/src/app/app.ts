@@ -4,6 +4,7 @@ import type { Api } from "../connection/api";
 import type { Identity } from "../connection/identity";
 import { type ConnectionListener, type ConnectionState, SessionConnection } from "../connection/session_connection";
 import { download } from "../dom/download";
+import { ownStorage } from "../dom/storage";
 import { elementById } from "../dom/elements";
 import { FilmMaker, type OpenWriter } from "../film/film_maker";
 import { inPageLanguage } from "../language/page_words";
@@ -392,7 +393,7 @@ export class App {
     document.body.append(share.element, keys, control.element);
     elementById("share-open").onclick = () => share.show();
     elementById("help-open").onclick = () => keys.showModal();
-    elementById("help-open").before(languageMenu(localStorage, this.target.open));
+    elementById("help-open").before(languageMenu(ownStorage, this.target.open));
     elementById("status-slot").append(
       controlBadge(this.participation, () => control.show()),
       this.viewers.element,
