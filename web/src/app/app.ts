@@ -56,7 +56,6 @@ import { Uploads } from "../session/uploads";
 import { Signal } from "../state/signal";
 import type { Clock } from "../timing/clock";
 import { Viewer } from "../viewer/viewer";
-import { viewpointKeys } from "../viewer/viewpoints";
 import { drawers } from "./drawers";
 import { dropZone } from "./drop_zone";
 import { filmStage } from "./film_stage";
@@ -64,7 +63,8 @@ import { Fluoroscopy } from "./fluoroscopy";
 import { stageInsets } from "./insets";
 import { SceneTools } from "./scene_tools";
 import { SecondView } from "./second_view";
-import { type Shortcut, shortcuts } from "./shortcuts";
+import { shortcuts } from "./shortcuts";
+import { viewpointShortcuts } from "./viewpoint_shortcuts";
 import { skipLinks } from "./skip_links";
 import { StudentView } from "./student_view";
 import { testHook } from "./test_hook";
@@ -348,7 +348,7 @@ export class App {
         { key: "PageUp", description: "Step before", when, run: () => this.student.moveInLesson(-1) },
         { key: "h", description: "Whole scene", run: () => this.tools.visit("home") },
         { key: "f", description: "Front view", run: () => this.tools.visit("front") },
-        ...this.viewKeys(),
+        ...viewpointShortcuts(this.tools),
         { key: "/", description: "Find a structure", run: () => elementById("find-structure").focus() },
         { key: "n", description: "Names of structures", run: () => this.tools.labels.set(!this.tools.labels.value) },
         { key: "m", description: "Measure a distance", run: () => this.tools.measuring.start() },
@@ -400,18 +400,6 @@ export class App {
       this.connectionBadge.element,
     );
     elementById("session-slot").append(sessionButton(controller, () => void this.chooser.show()));
-  }
-
-  /** The keys of the named views; a scene may lack some. */
-  private viewKeys(): Shortcut[] {
-    const { viewpoints } = this.tools;
-    const byKey = (key: string) => viewpoints.value.find((each) => each.key === key);
-    return viewpointKeys.map(([key, description]) => ({
-      key,
-      description,
-      when: () => byKey(key) !== undefined,
-      run: () => this.tools.visit(byKey(key)?.name ?? ""),
-    }));
   }
 
   /** Distributes what the connection receives. */
