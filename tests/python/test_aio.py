@@ -34,6 +34,17 @@ class AioTest(SessionTest, unittest.IsolatedAsyncioTestCase):
                 await session.export(path)
                 self.assertTrue(path.exists())
 
+    async def test_tissue_is_that_of_the_blocking_client(self):
+        blocking = phrenic.Session("person-1")
+        self.addCleanup(blocking.close)
+        expected = blocking.step(500) and blocking.tissue()
+        async with phrenic.aio.Session("person-1") as session:
+            await session.step(500)
+            read = await session.tissue()
+        for name, lung in expected.lungs.items():
+            self.assertTrue((read[name].amplitudes == lung.amplitudes).all(), name)
+            self.assertTrue(lung.amplitudes.any(), name)
+
     def test_the_twin_has_every_name_and_argument(self):
         for blocking, twin in (
             (phrenic.Session, phrenic.aio.Session),

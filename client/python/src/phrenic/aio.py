@@ -39,6 +39,7 @@ from .operations import (
 from .runs import Run, parts, request_of
 from .server import ServerFacts, default_server
 from .table import Table
+from .tissue import Tissue, tissue
 from .v1 import server_pb2, session_pb2, state_pb2
 
 
@@ -219,6 +220,10 @@ class Session(SessionOperations):
     async def forces(self, body: str, vertex: Optional[int] = None, kind: str = "") -> Any:
         """As phrenic.Session.forces."""
         return await self._do(self._forces(body, vertex, kind))
+
+    async def tissue(self, points: Optional[Sequence[Sequence[float]]] = None) -> Tissue:
+        """As phrenic.Session.tissue."""
+        return await self._do(tissue(self, points))
 
     async def set(self, preset: str = "", at_tick: Optional[int] = None, **parameters: Any) -> None:
         """As phrenic.Session.set."""
