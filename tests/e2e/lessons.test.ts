@@ -35,9 +35,9 @@ afterAll(() => endAll(browser, server));
 /** The measures of a scene over one breath: values by name, one for each sample. */
 type Breath = Map<string, number[]>;
 
-/** Time between two samples, and time that passes before them [simulated s]; then breaths repeat within 1 %. */
+/** Time between two samples, and time that passes before them [simulated s]; then every claim is within 1 % of later breaths. */
 const interval = 0.05;
-const settling = 8;
+const settling = 4;
 
 const breaths = new Map<string, Promise<Breath>>();
 
