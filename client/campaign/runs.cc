@@ -9,14 +9,13 @@
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "client/connection/local_run.h"
 #include "client/files/local_models.h"
 #include "server/study/batch/batch.h"
 #include "server/study/batch/run_pool.h"
 
 namespace phrenic::client {
 namespace {
-
-constexpr double kReadingsPerSecond = 60;  // of simulated time
 
 // The runs of one scene and preset. Thread-safe once all runs are added.
 class CellBatch {

@@ -10,8 +10,6 @@
 namespace phrenic::client {
 namespace {
 
-constexpr double kReadingsPerSecond = 60;  // of simulated time
-
 double ProcessCpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 std::int64_t FortiethOf(std::int64_t total) {

@@ -13,6 +13,9 @@
 
 namespace phrenic::client {
 
+// How often measures are read for the ranges that runs report [1/s of simulated time].
+inline constexpr double kReadingsPerSecond = 60;
+
 // The cost and the results of a run.
 struct RunCost {
   std::int64_t steps = 0;

@@ -18,7 +18,7 @@ constexpr double kQuarter = 144;  // of the circumference [mm]
 
 // How far the meridians go on below and above for a person, and how exactly a height is met [mm].
 constexpr double kBelow = 100, kAbove = 4, kExact = 1e-9;
-constexpr int kRounds = 60;
+constexpr int kMostRounds = 60;
 
 // Returns the adult's point of the cage at an azimuth and a height.
 Eigen::Vector3d OfAdult(double azimuth, double z) {
@@ -42,7 +42,7 @@ struct Grid {
     double low = -kBelow, high = kHeight + kAbove;
     const auto above = [&](double at) { return map(OfAdult(azimuth, at)).z() - z; };
     double under = above(low), over = above(high), at = low;
-    for (int round = 0, stays = 0; round < kRounds && high - low > kExact; ++round) {
+    for (int round = 0, stays = 0; round < kMostRounds && high - low > kExact; ++round) {
       at = low - under * (high - low) / (over - under);
       const double here = above(at);
       if (std::abs(here) < kExact) break;

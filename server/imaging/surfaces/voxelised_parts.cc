@@ -18,14 +18,14 @@ constexpr double kLargest = 3000;    // extent of all surfaces together [mm]
 constexpr double kMarginOfMask = 3;  // voxels
 
 // Returns the number of voxels of this size [mm] that the sizes [mm] need, with a margin along each axis.
-double VoxelsOf(const Eigen::Vector3d& sizes, double voxel, double margin) {
+double VoxelCount(const Eigen::Vector3d& sizes, double voxel, double margin) {
   return ((sizes / voxel).array().ceil() + margin).prod();
 }
 
 // Returns an empty grid around the box [mm]. Flat boxes too have at most kMostOfGrid voxels.
 LabelVolume GridAround(const Eigen::AlignedBox3d& box) {
   double voxel = kVoxel;
-  while (VoxelsOf(box.sizes(), voxel, 2 * kFree) > kMostOfGrid) voxel *= 1.02;
+  while (VoxelCount(box.sizes(), voxel, 2 * kFree) > kMostOfGrid) voxel *= 1.02;
   LabelVolume volume;
   volume.size = (box.sizes() / voxel).array().ceil().cast<int>() + static_cast<int>(2 * kFree);
   volume.to_patient.linear() = voxel * Eigen::Matrix3d::Identity();
@@ -80,7 +80,7 @@ absl::StatusOr<VoxelisedParts> VoxeliseParts(const std::vector<PatientBody>& bod
   const double voxel = voxelised.volume.Spacing().x();
   for (const PatientBody& body : bodies) {
     if (absl::Status status = go_on(); !status.ok()) return status;
-    voxels += VoxelsOf(BoxAround(body.mesh.vertices).sizes(), voxel, kMarginOfMask);
+    voxels += VoxelCount(BoxAround(body.mesh.vertices).sizes(), voxel, kMarginOfMask);
     if (voxels > kMostOfParts) return absl::ResourceExhaustedError("too many large surfaces to derive others from");
     Part& part = voxelised.parts.emplace_back();
     part.name = body.name;
