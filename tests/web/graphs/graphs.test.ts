@@ -46,6 +46,47 @@ describe("the graphs of a scene", () => {
   });
 });
 
+describe("the loops of a thorax", () => {
+  // A breath of 0.5 l, of which the abdomen displaces `share`.
+  const thoraxAt = (time: number, share: number) =>
+    create(FrameSchema, {
+      time,
+      measures: [
+        { name: "lung volume", value: 0.0025 + 0.0005 * Math.sin(time), unit: "m^3" },
+        { name: "flow", value: 0.0005 * Math.cos(time), unit: "m^3/s" },
+        { name: "pleural pressure", value: -500, unit: "Pa" },
+        { name: "displaced by the abdomen", value: 0.0005 * share * Math.sin(time), unit: "m^3" },
+      ],
+    });
+  const loopOf = (id: string, share: number) => {
+    const spec = graphsOf(thoraxAt(0, share)).find((each) => each.id === id)!;
+    const series = new TimeSeries(100);
+    for (let time = 0; time <= 6; time += 0.1) series.add(time, valuesOf(thoraxAt(time, share)));
+    return { spec, ...graphData(spec, series, { start: 0, end: 6 }) };
+  };
+
+  test("AreInLitres", () => {
+    const { spec, abscissa, curves } = loopOf("flow-volume", 0.6);
+    expect([spec.unit, spec.abscissa?.unit]).toEqual(["l/s", "l"]);
+    // A breath of a sine is an ellipse: (flow / 0.5)^2 + ((volume - 2.5) / 0.5)^2 = 1.
+    abscissa!.forEach((volume, i) => expect((curves[0][i] / 0.5) ** 2 + ((volume - 2.5) / 0.5) ** 2).toBeCloseTo(1, 9));
+  });
+
+  test.each([
+    [0.6, 0.4 / 0.6],
+    [0.2, 0.8 / 0.2],
+    [-0.25, 1.25 / -0.25],
+  ])("KonnoAndMeadsLineHasTheSlopeOfTheShares %d", (share, slope) => {
+    const { abscissa, curves } = loopOf("konno-mead", share);
+    abscissa!.forEach((below, i) => expect(curves[0][i]).toBeCloseTo(2.5 + slope * below, 9));
+  });
+
+  test("AreThoseThatAScenesMeasuresAllow", () => {
+    expect(graphs.map(({ id }) => id)).not.toContain("konno-mead");
+    expect(graphs.map(({ id }) => id)).not.toContain("flow-volume");
+  });
+});
+
 describe("the data of a graph", () => {
   test("CoverTheSpanWithOnePointOnEitherSide", () => {
     const data = graphData(graph("domes"), history, { start: 3, end: 5 });

@@ -30,6 +30,7 @@ export function valuesOf(frame: Frame): [key: string, value: number][] {
   return [
     ...frame.measures.map(({ name, value }): [string, number] => [measureKey(name), value]),
     ...frame.probes.map(({ name, dz }): [string, number] => [probeKey(name), dz]),
+    ...ribCageVolume(frame).map((value): [string, number] => [ribCageKey, value]),
     ["breath", frame.breath],
   ];
 }
@@ -46,6 +47,8 @@ export function graphsOf(frame: Frame): GraphSpec[] {
     ...domes(frame),
     ...byUnit(frame, "Pa", "Pressure", true),
     ...loop(frame),
+    ...flowVolumeLoop(frame),
+    ...konnoMead(frame),
     ...probes(frame),
     ...volumes,
     ...byUnit(frame, "m", "Height", true),
@@ -84,6 +87,41 @@ function loop({ measures }: Frame): GraphSpec[] {
   const abscissa = { ...curve(measureKey(pressure.name), pressure.name, 1), unit: "Pa" };
   const curves = [curve(measureKey(volume.name), volume.name, factor)];
   return [{ id: "loop", title: "P–V loop", unit, curves, abscissa }];
+}
+
+/** Flow over volume, as a spirometer draws it: a narrow airway dents the limb of expiration. */
+function flowVolumeLoop({ measures }: Frame): GraphSpec[] {
+  const volume = measures.find(({ name }) => name === "lung volume");
+  const flow = measures.find(({ unit }) => unit === "m^3/s");
+  if (volume === undefined || flow === undefined) return [];
+  const [unit, factor] = displayUnit("m^3/s");
+  const [litre, perLitre] = displayUnit("m^3");
+  const abscissa = { ...curve(measureKey(volume.name), volume.name, perLitre), unit: litre };
+  const curves = [curve(measureKey(flow.name), flow.name, factor)];
+  return [{ id: "flow-volume", title: "Flow–volume loop", unit, curves, abscissa }];
+}
+
+/**
+ * The Konno-Mead diagram: what the rib cage displaces over what the abdomen displaces. A quiet breath is a narrow loop
+ * upwards to the right; a loop to the left is paradoxical motion.
+ */
+function konnoMead(frame: Frame): GraphSpec[] {
+  if (ribCageVolume(frame).length === 0) return [];
+  const [unit, factor] = displayUnit("m^3");
+  const abscissa = { ...curve(measureKey(abdomen), "abdomen", factor), unit };
+  return [
+    { id: "konno-mead", title: "Konno–Mead diagram", unit, curves: [curve(ribCageKey, "rib cage", factor)], abscissa },
+  ];
+}
+
+const abdomen = "displaced by the abdomen";
+const ribCageKey = "rib cage";
+
+/** Returns the part of the lung volume that the abdomen does not displace [m^3], or nothing for other scenes. */
+function ribCageVolume({ measures }: Frame): number[] {
+  const valueOf = (wanted: string) => measures.find(({ name }) => name === wanted)?.value;
+  const [all, below] = [valueOf("lung volume"), valueOf(abdomen)];
+  return all === undefined || below === undefined ? [] : [all - below];
 }
 
 /** The descent of each dome, as M-mode ultrasound shows it. */
