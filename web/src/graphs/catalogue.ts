@@ -108,21 +108,21 @@ function flowVolumeLoop({ measures }: Frame): GraphSpec[] {
 function konnoMead(frame: Frame): GraphSpec[] {
   if (ribCageVolume(frame).length === 0) return [];
   const [unit, factor] = displayUnit("m^3");
-  const abscissa = { ...curve(measureKey(abdomen), konnoMeadNames.below, factor), unit };
+  const abscissa = { ...curve(measureKey(abdomen), abdomen, factor), unit };
   return [
     {
       id: "konno-mead",
       title: "Konno–Mead diagram",
       unit,
-      curves: [curve(ribCageKey, konnoMeadNames.above, factor)],
+      curves: [curve(ribCageKey, ribCage, factor)],
       abscissa,
     },
   ];
 }
 
 const abdomen = "displaced by the abdomen";
-const ribCageKey = "rib cage";
-const konnoMeadNames = { above: "rib cage", below: "abdomen" };
+const ribCageKey = "rib cage volume";
+const ribCage = "displaced by the rib cage";
 
 /** Returns the part of the lung volume that the abdomen does not displace [m^3], or nothing for other scenes. */
 function ribCageVolume({ measures }: Frame): number[] {
