@@ -1,6 +1,7 @@
 #include "server/lti/grading.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -20,6 +21,14 @@ std::string ResponseOf(const v1::SubmitAnswerRequest& answer) {
 }
 
 std::string IssuerOf(const Learner& learner) { return learner.platform.substr(0, learner.platform.find(' ')); }
+
+// Returns the number of right answers; nothing while a question has no answer, or if the lesson has none.
+std::optional<int> ScoreOf(const Learner::Assignment& assignment, const v1::Lesson& lesson) {
+  const int questions = QuestionCount(lesson);
+  if (questions == 0 || static_cast<int>(assignment.right.size()) < questions) return std::nullopt;
+  return static_cast<int>(
+      std::count_if(assignment.right.begin(), assignment.right.end(), [](const auto& each) { return each.second; }));
+}
 
 void AddStatement(Outbox* statements, const Deed& deed, absl::Time now) {
   if (statements == nullptr) return;
@@ -47,6 +56,7 @@ std::string Grading::Enter(const Platform& platform, const Launch& launch, const
   Learner one{.platform = KeyOf(platform), .course = course, .user = launch.user};
   const std::string key = KeyOf(one);
   Deed deed{Deed::Verb::kLaunched, platform.issuer, launch.user, parts_.url, launch.lesson, launch.lesson};
+  const auto lesson = parts_.lessons->Find(launch.lesson);
   std::string respondent;
   {
     absl::MutexLock lock(&mutex_);
@@ -58,7 +68,10 @@ std::string Grading::Enter(const Platform& platform, const Launch& launch, const
     learner.seen = now;
     const bool known = learner.assignments.contains(launch.lesson);
     if (!launch.lesson.empty() && (known || learner.assignments.size() < kMostAssignments)) {
-      learner.assignments[launch.lesson].line_item = launch.line_item;
+      std::string& line_item = learner.assignments[launch.lesson].line_item;
+      const bool moved = line_item != launch.line_item;
+      line_item = launch.line_item;
+      if (moved && lesson.ok()) SendScore(learner, launch.lesson, *lesson, now);
     }
     Save(learner);
     respondent = learner.respondent;
@@ -80,23 +93,27 @@ void Grading::ReportAnswer(const Learner& learner, const v1::SubmitAnswerRequest
 
 void Grading::ReportScore(const Learner& learner, const std::string& name, const v1::Lesson& lesson,
                           absl::Time now) const {
-  const Learner::Assignment& assignment = learner.assignments.at(name);
-  const int questions = QuestionCount(lesson);
-  if (static_cast<int>(assignment.right.size()) < questions) return;
-  const auto score = static_cast<int>(
-      std::count_if(assignment.right.begin(), assignment.right.end(), [](const auto& each) { return each.second; }));
+  const auto score = ScoreOf(learner.assignments.at(name), lesson);
+  if (!score.has_value()) return;
   Deed deed{Deed::Verb::kCompleted, IssuerOf(learner), learner.user, parts_.url, name, lesson.title()};
-  deed.score = score;
-  deed.most = questions;
+  deed.score = *score;
+  deed.most = QuestionCount(lesson);
   AddStatement(parts_.statements, deed, now);
-  if (assignment.line_item.empty() || parts_.scores == nullptr) return;
+  SendScore(learner, name, lesson, now);
+}
+
+void Grading::SendScore(const Learner& learner, const std::string& name, const v1::Lesson& lesson,
+                        absl::Time now) const {
+  const Learner::Assignment& assignment = learner.assignments.at(name);
+  const auto score = ScoreOf(assignment, lesson);
+  if (!score.has_value() || assignment.line_item.empty() || parts_.scores == nullptr) return;
   json content = {{"userId", learner.user},
-                  {"scoreGiven", score},
-                  {"scoreMaximum", questions},
+                  {"scoreGiven", *score},
+                  {"scoreMaximum", QuestionCount(lesson)},
                   {"activityProgress", "Completed"},
                   {"gradingProgress", "FullyGraded"},
                   {"timestamp", absl::FormatTime("%Y-%m-%dT%H:%M:%E6SZ", now, absl::UTCTimeZone())}};
-  parts_.scores->Add({.id = Sha256Hex(absl::StrCat(KeyOf(learner), " ", name)),
+  parts_.scores->Add({.id = Sha256Hex(absl::StrCat(KeyOf(learner), " ", name, " ", assignment.line_item)),
                       .receiver = learner.platform,
                       .address = assignment.line_item,
                       .content = std::move(content)},

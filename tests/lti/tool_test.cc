@@ -310,6 +310,17 @@ TEST_F(ToolTest, SendsTheScoreWhenAllQuestionsAreAnsweredAndAgainWhenItChanges) 
   EXPECT_TRUE(access::KeySet::Parse(published.dump())->Verified(FieldOf(form, "client_assertion")).ok());
 }
 
+TEST_F(ToolTest, SendsTheScoreAlsoToTheLineItemOfAnotherActivity) {
+  const int most = AnswerAll(Launch(ExampleClaims()), true);
+  ASSERT_EQ(school_.To("https://school.example/items/3/scores?type=1", 1).size(), 1U);
+  json again = ExampleClaims();
+  again[kExampleEndpoint]["lineitem"] = "https://school.example/items/4";
+  Launch(again);
+  const auto sent = school_.To("https://school.example/items/4/scores", 1);
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_EQ(json::parse(sent.back().body)["scoreGiven"], most);
+}
+
 TEST_F(ToolTest, StatesWhatALearnerDoes) {
   const Response launched = Launch(ExampleClaims());
   const auto questions = static_cast<std::size_t>(AnswerAll(launched, true));
