@@ -67,8 +67,8 @@ void AddMembers(const std::string& body, MemberNames& names) {
 absl::Status StatusOfHttp(const std::string& who, long status) {
   if (status >= 200 && status < 300) return absl::OkStatus();
   const std::string text = absl::StrCat(who, " answers with HTTP status ", status);
-  const bool passing = status == 408 || status == 425 || status == 429 || status >= 500;
-  return passing ? absl::UnavailableError(text) : absl::InvalidArgumentError(text);
+  const bool final = status == 400 || status == 404 || status == 422;
+  return final ? absl::InvalidArgumentError(text) : absl::UnavailableError(text);
 }
 
 void PlatformClient::ForgetToken(const std::string& scope) {
@@ -100,7 +100,10 @@ absl::StatusOr<std::string> PlatformClient::AccessToken(const std::string& scope
                                     {"client_assertion", *assertion},
                                     {"scope", scope}})});
   if (!answer.ok()) return answer.status();
-  if (absl::Status status = StatusOfHttp(OriginOf(platform_.token_url), answer->status); !status.ok()) return status;
+  // A wrong setting on either side can be corrected, so that no refusal of a token is final.
+  if (absl::Status status = StatusOfHttp(OriginOf(platform_.token_url), answer->status); !status.ok()) {
+    return absl::UnavailableError(absl::StrCat("no access token: ", status.message()));
+  }
   const json granted = json::parse(answer->body, nullptr, false);
   const std::string token = StringIn(granted, "access_token");
   const auto fits = [](unsigned char c) { return c > ' ' && c < 0x7F; };
