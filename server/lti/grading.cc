@@ -22,12 +22,17 @@ std::string ResponseOf(const v1::SubmitAnswerRequest& answer) {
 
 std::string IssuerOf(const Learner& learner) { return learner.platform.substr(0, learner.platform.find(' ')); }
 
-// Returns the number of right answers; nothing while a question has no answer, or if the lesson has none.
+// Returns the number of right answers to the lesson's questions; nothing while one has no answer, or if it has none. An
+// answer to a step that is no question any more does not count.
 std::optional<int> ScoreOf(const Learner::Assignment& assignment, const v1::Lesson& lesson) {
-  const int questions = QuestionCount(lesson);
-  if (questions == 0 || static_cast<int>(assignment.right.size()) < questions) return std::nullopt;
-  return static_cast<int>(
-      std::count_if(assignment.right.begin(), assignment.right.end(), [](const auto& each) { return each.second; }));
+  int score = 0;
+  for (int step = 1; step <= lesson.steps_size(); ++step) {
+    if (!lesson.steps(step - 1).has_question()) continue;
+    const auto answer = assignment.right.find(step);
+    if (answer == assignment.right.end()) return std::nullopt;
+    if (answer->second) ++score;
+  }
+  return QuestionCount(lesson) == 0 ? std::nullopt : std::optional(score);
 }
 
 void AddStatement(Outbox* statements, const Deed& deed, absl::Time now) {
