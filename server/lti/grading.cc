@@ -142,9 +142,12 @@ void Grading::Answered(const v1::SubmitAnswerRequest& answer, absl::Time now) {
   Learner& learner = learners_.at(key->second);
   const auto assignment = learner.assignments.find(answer.lesson());
   if (learner.session != answer.session_id() || assignment == learner.assignments.end()) return;
-  ReportAnswer(learner, answer, *lesson, *right, now);
+  std::string& given = assignment->second.given[answer.step()];
   const auto before = assignment->second.right.find(answer.step());
   const bool same = before != assignment->second.right.end() && before->second == *right;
+  if (same && given == ResponseOf(answer)) return;
+  given = ResponseOf(answer);
+  ReportAnswer(learner, answer, *lesson, *right, now);
   if (same) return;
   assignment->second.right[answer.step()] = *right;
   Save(learner);

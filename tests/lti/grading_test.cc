@@ -75,5 +75,14 @@ TEST_F(GradingTest, NoScoreIsAboveTheQuestionsOfThePresentLesson) {
   EXPECT_EQ(sent_.back()["scoreMaximum"], 2);
 }
 
+TEST_F(GradingTest, ARepeatedAnswerIsStatedOnce) {
+  Enter();
+  const std::size_t before = statements_.size();
+  for (int i = 0; i < 100; ++i) Answer(1, 7);
+  EXPECT_EQ(statements_.size(), before + 1);
+  Answer(1, 8);  // as wrong as the one before, but another
+  EXPECT_EQ(statements_.size(), before + 2);
+}
+
 }  // namespace
 }  // namespace phrenic::lti
