@@ -130,6 +130,12 @@ bool Grading::Knows(const std::string& respondent) const {
   return by_respondent_.contains(respondent);
 }
 
+bool Grading::Launched(const std::string& session, const std::string& respondent) const {
+  absl::MutexLock lock(&mutex_);
+  const auto key = by_respondent_.find(respondent);
+  return key != by_respondent_.end() && learners_.at(key->second).session == session;
+}
+
 void Grading::Answered(const v1::SubmitAnswerRequest& answer, absl::Time now) {
   if (answer.phase() == v1::ANSWER_PHASE_BEFORE || !Knows(answer.respondent())) return;
   const auto lesson = parts_.lessons->Find(answer.lesson());

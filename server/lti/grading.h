@@ -46,6 +46,8 @@ class Grading {
                     const std::string& session, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
   // Notes an answer, if it is of a learner who was launched into this session.
   void Answered(const v1::SubmitAnswerRequest& answer, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
+  // True if the secret is of a learner who was launched into the session.
+  bool Launched(const std::string& session, const std::string& respondent) const ABSL_LOCKS_EXCLUDED(mutex_);
   // Returns the users of a session by their secrets.
   std::map<std::string, std::string> Users(const std::string& session) const ABSL_LOCKS_EXCLUDED(mutex_);
   // Adds a learner of an earlier server. INVALID_ARGUMENT if the text is damaged.

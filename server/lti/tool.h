@@ -56,8 +56,12 @@ class Tool {
   // Errors are pages in plain words, and lines of the log.
   Response Handle(const Request& request, absl::Time now);
 
-  // Notes an answer of a learner; returns at once.
+  // Notes an answer of a learner. Reads the lesson's file, but waits for no other server.
   void Answered(const v1::SubmitAnswerRequest& answer, absl::Time now) { grading_.Answered(answer, now); }
+  // True if the secret is of a learner who was launched into the session. Returns at once.
+  bool Launched(const std::string& session, const std::string& respondent) const {
+    return grading_.Launched(session, respondent);
+  }
   // Returns the names of a session's learners by the secrets with which they answer, as the platform gives them; empty
   // if it does not. Blocks; keeps names for ten minutes.
   std::map<std::string, std::string> Names(const std::string& session, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);

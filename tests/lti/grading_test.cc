@@ -84,5 +84,12 @@ TEST_F(GradingTest, ARepeatedAnswerIsStatedOnce) {
   EXPECT_EQ(statements_.size(), before + 2);
 }
 
+TEST_F(GradingTest, ALearnerIsLaunchedIntoOneSession) {
+  Enter();
+  EXPECT_TRUE(grading_.Launched("session", respondent_));
+  EXPECT_FALSE(grading_.Launched("another", respondent_));
+  EXPECT_FALSE(grading_.Launched("session", ""));
+}
+
 }  // namespace
 }  // namespace phrenic::lti
