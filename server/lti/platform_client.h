@@ -35,8 +35,9 @@ class PlatformClient {
 
   // Sends a score to a line item.
   absl::Status SendScore(const std::string& line_item, const nlohmann::json& score);
-  // Returns the names at the address "context_memberships_url": 20 pages and 10,000 members at most.
-  absl::StatusOr<MemberNames> Members(const std::string& address);
+  // Returns the names at the address "context_memberships_url": 20 pages and 10,000 members at most. Returns
+  // those of the pages before one that cannot be read, or that would begin after the deadline.
+  absl::StatusOr<MemberNames> Members(const std::string& address, absl::Time deadline = absl::InfiniteFuture());
 
  private:
   struct Token {

@@ -49,5 +49,25 @@ TEST_F(PlatformClientTest, GivesAScoreUpOnlyIfItIsRefusedItself) {
   }
 }
 
+TEST_F(PlatformClientTest, KeepsTheMembersOfThePagesBeforeOneThatFails) {
+  const auto answer = [](const HttpRequest& request) -> absl::StatusOr<HttpAnswer> {
+    if (request.post) return HttpAnswer{200, R"({"access_token":"t1","expires_in":3600})", ""};
+    if (absl::EndsWith(request.address, "/1")) {
+      return HttpAnswer{200, R"({"members":[{"user_id":"a","name":"Anna"}]})",
+                        R"(<https://school.example/x,y>; rel="prev", <https://school.example/2,5>; rel="next")"};
+    }
+    if (absl::EndsWith(request.address, "/2,5")) {
+      return HttpAnswer{200, R"({"members":[{"user_id":"b","name":"Bo"}]})", R"(<https://school.example/3>; rel=next)"};
+    }
+    return HttpAnswer{503, "", ""};
+  };
+  PlatformClient client(platform_, *key_, answer);
+  const auto all = client.Members("https://school.example/1");
+  ASSERT_TRUE(all.ok()) << all.status();
+  EXPECT_THAT(*all, testing::ElementsAre(testing::Pair("a", "Anna"), testing::Pair("b", "Bo")));
+  EXPECT_EQ(client.Members("https://school.example/1", absl::InfinitePast())->size(), 1U);
+  EXPECT_TRUE(absl::IsUnavailable(client.Members("https://school.example/3").status()));
+}
+
 }  // namespace
 }  // namespace phrenic::lti
