@@ -63,7 +63,8 @@ class Tool {
     return grading_.Launched(session, respondent);
   }
   // Returns the names of a session's learners by the secrets with which they answer, as the platform gives them; empty
-  // if it does not. Blocks; keeps names for ten minutes.
+  // if it does not. Keeps names for ten minutes. One call at a time asks the platform, and blocks for ten seconds, or
+  // twenty if a request begins late; others return the names of the time before meanwhile.
   std::map<std::string, std::string> Names(const std::string& session, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Continues with what an earlier server kept. A damaged record is in `lost`.
@@ -84,6 +85,7 @@ class Tool {
     std::string memberships;
     MemberNames names;
     absl::Time read = absl::InfinitePast();
+    bool reading = false;  // a call asks the platform now
   };
 
   Response OnLogin(const Fields& fields, absl::Time now);
@@ -95,6 +97,8 @@ class Tool {
   absl::StatusOr<Response> SendChoice(const Choice& choice, const Fields& fields, absl::Time now);
   void NoteCourse(const std::string& session, std::size_t platform, const std::string& memberships)
       ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns the names of all members of the session's course by their users; asks the platform if it is time.
+  MemberNames NamesOfCourse(const std::string& session, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status DeliverScore(const Parcel& parcel);
   // Returns all origins that may frame a page that belongs to no launch yet.
   std::vector<std::string> AllFramers() const;
