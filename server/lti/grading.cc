@@ -60,8 +60,9 @@ std::string Grading::Enter(const Platform& platform, const Launch& launch, const
                            const std::string& session, absl::Time now) {
   Learner one{.platform = KeyOf(platform), .course = course, .user = launch.user};
   const std::string key = KeyOf(one);
-  Deed deed{Deed::Verb::kLaunched, platform.issuer, launch.user, parts_.url, launch.lesson, launch.lesson};
   const auto lesson = parts_.lessons->Find(launch.lesson);
+  const std::string title = lesson.ok() ? lesson->title() : launch.lesson;
+  Deed deed{Deed::Verb::kLaunched, platform.issuer, launch.user, parts_.url, launch.lesson, title};
   std::string respondent;
   {
     absl::MutexLock lock(&mutex_);
