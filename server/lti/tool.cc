@@ -29,8 +29,8 @@ std::string CookieName(const std::string& state) { return "phrenic_lti_" + state
 
 // Sent from a frame of the platform's page, hence SameSite=None; kept apart for each such page (Partitioned), so that
 // browsers that refuse the cookies of third parties keep it as well.
-std::string LoginCookie(const std::string& state) {
-  return absl::StrCat(CookieName(state), "=", state, "; Path=/lti; Max-Age=", kCookieSeconds,
+std::string CookieOfLogin(const std::string& state, const std::string& value, int seconds) {
+  return absl::StrCat(CookieName(state), "=", value, "; Path=/lti; Max-Age=", seconds,
                       "; HttpOnly; Secure; SameSite=None; Partitioned");
 }
 
@@ -143,7 +143,7 @@ Response Tool::OnLogin(const Fields& fields, absl::Time now) {
     question.emplace_back("lti_message_hint", FieldOf(fields, "lti_message_hint"));
   const char* joint = absl::StrContains(platform->login_url, "?") ? "&" : "?";
   Response response = Redirect(absl::StrCat(platform->login_url, joint, WriteForm(question)));
-  response.headers.emplace_back("Set-Cookie", LoginCookie(state));
+  response.headers.emplace_back("Set-Cookie", CookieOfLogin(state, state, kCookieSeconds));
   return response;
 }
 
@@ -191,7 +191,10 @@ Response Tool::OnLaunch(const Fields& fields, const std::string& cookies, absl::
   } else {
     response = OpenLesson(*choice, now);
   }
-  if (response.ok()) return *std::move(response);
+  if (response.ok()) {
+    response->headers.emplace_back("Set-Cookie", CookieOfLogin(FieldOf(fields, "state"), "", 0));  // it was used
+    return *std::move(response);
+  }
   spdlog::warn("lti: a launch was refused: {}", std::string(response.status().message()));
   return ErrorPage(response.status(), AllFramers());
 }
