@@ -14,6 +14,7 @@ namespace phrenic::access {
 namespace {
 
 constexpr std::size_t kMaxDocument = 1 << 20;  // [bytes]
+constexpr std::size_t kMaxLinks = 1 << 16;     // [bytes]
 constexpr long kTimeout = 10;                  // [s]
 
 std::size_t Append(const char* bytes, std::size_t, std::size_t count, void* text) {
@@ -23,12 +24,15 @@ std::size_t Append(const char* bytes, std::size_t, std::size_t count, void* text
   return count;
 }
 
-// Keeps the header Link.
+// Keeps the headers Link, with ", " between them.
 std::size_t ReadLink(const char* bytes, std::size_t, std::size_t count, void* text) {
   absl::string_view line(bytes, count);
   if (absl::StartsWithIgnoreCase(line, "link:")) {
     line.remove_prefix(5);
-    *static_cast<std::string*>(text) = std::string(absl::StripAsciiWhitespace(line));
+    auto& links = *static_cast<std::string*>(text);
+    if (links.size() + count <= kMaxLinks) {
+      absl::StrAppend(&links, links.empty() ? "" : ", ", absl::StripAsciiWhitespace(line));
+    }
   }
   return count;
 }

@@ -27,7 +27,7 @@ struct HttpRequest {
 struct HttpAnswer {
   long status = 0;
   std::string body;
-  std::string link;  // the header Link (RFC 8288)
+  std::string link;  // the headers Link (RFC 8288), with ", " between them; 64 KiB at most
 };
 
 // Returns the answer to a request, whatever its status. Does not follow redirects; the server's certificate must be

@@ -32,7 +32,8 @@ bool IsCompact(std::string_view token) {
   return parts.size() == 3 && std::ranges::all_of(parts, IsBase64Url);
 }
 
-// True if all numbers of a key are in base64url (RFC 7518 section 6).
+}  // namespace
+
 bool HasReadableNumbers(const json& key) {
   constexpr const char* kNumbers[] = {"x", "y", "d", "n", "e", "p", "q", "dp", "dq", "qi", "k"};
   return std::ranges::all_of(kNumbers, [&](const char* name) {
@@ -40,8 +41,6 @@ bool HasReadableNumbers(const json& key) {
            (key[name].is_string() && IsBase64Url(key[name].get<std::string>()));
   });
 }
-
-}  // namespace
 
 struct KeySet::Key {
   explicit Key(cjose_jwk_t* imported) : jwk(imported) {}

@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_ACCESS_KEY_SET_H_
 
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,10 @@ class KeySet {
   struct Key;
   std::vector<std::unique_ptr<Key>> keys_;  // RSA and EC, in the order of the set
 };
+
+// True if all numbers of a key (RFC 7518 section 6) are texts in base64url: cjose ends the process at some others.
+// Call it before cjose_jwk_import. Thread-safe.
+bool HasReadableNumbers(const nlohmann::json& key);
 
 // Checks a token's header, as JSON text. Thread-safe. UNAUTHENTICATED as KeySet::Verified.
 absl::Status CheckJwtHeader(std::string_view header);

@@ -1,6 +1,7 @@
 #include "server/lti/grading.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -20,6 +21,19 @@ std::string ResponseOf(const v1::SubmitAnswerRequest& answer) {
 }
 
 std::string IssuerOf(const Learner& learner) { return learner.platform.substr(0, learner.platform.find(' ')); }
+
+// Returns the number of right answers to the lesson's questions; nothing while one has no answer, or if it has none. An
+// answer to a step that is no question any more does not count.
+std::optional<int> ScoreOf(const Learner::Assignment& assignment, const v1::Lesson& lesson) {
+  int score = 0;
+  for (int step = 1; step <= lesson.steps_size(); ++step) {
+    if (!lesson.steps(step - 1).has_question()) continue;
+    const auto answer = assignment.right.find(step);
+    if (answer == assignment.right.end()) return std::nullopt;
+    if (answer->second) ++score;
+  }
+  return QuestionCount(lesson) == 0 ? std::nullopt : std::optional(score);
+}
 
 void AddStatement(Outbox* statements, const Deed& deed, absl::Time now) {
   if (statements == nullptr) return;
@@ -46,7 +60,9 @@ std::string Grading::Enter(const Platform& platform, const Launch& launch, const
                            const std::string& session, absl::Time now) {
   Learner one{.platform = KeyOf(platform), .course = course, .user = launch.user};
   const std::string key = KeyOf(one);
-  Deed deed{Deed::Verb::kLaunched, platform.issuer, launch.user, parts_.url, launch.lesson, launch.lesson};
+  const auto lesson = parts_.lessons->Find(launch.lesson);
+  const std::string title = lesson.ok() ? lesson->title() : launch.lesson;
+  Deed deed{Deed::Verb::kLaunched, platform.issuer, launch.user, parts_.url, launch.lesson, title};
   std::string respondent;
   {
     absl::MutexLock lock(&mutex_);
@@ -58,7 +74,10 @@ std::string Grading::Enter(const Platform& platform, const Launch& launch, const
     learner.seen = now;
     const bool known = learner.assignments.contains(launch.lesson);
     if (!launch.lesson.empty() && (known || learner.assignments.size() < kMostAssignments)) {
-      learner.assignments[launch.lesson].line_item = launch.line_item;
+      std::string& line_item = learner.assignments[launch.lesson].line_item;
+      const bool moved = line_item != launch.line_item;
+      line_item = launch.line_item;
+      if (moved && lesson.ok()) SendScore(learner, launch.lesson, *lesson, now);
     }
     Save(learner);
     respondent = learner.respondent;
@@ -80,23 +99,27 @@ void Grading::ReportAnswer(const Learner& learner, const v1::SubmitAnswerRequest
 
 void Grading::ReportScore(const Learner& learner, const std::string& name, const v1::Lesson& lesson,
                           absl::Time now) const {
-  const Learner::Assignment& assignment = learner.assignments.at(name);
-  const int questions = QuestionCount(lesson);
-  if (static_cast<int>(assignment.right.size()) < questions) return;
-  const auto score = static_cast<int>(
-      std::count_if(assignment.right.begin(), assignment.right.end(), [](const auto& each) { return each.second; }));
+  const auto score = ScoreOf(learner.assignments.at(name), lesson);
+  if (!score.has_value()) return;
   Deed deed{Deed::Verb::kCompleted, IssuerOf(learner), learner.user, parts_.url, name, lesson.title()};
-  deed.score = score;
-  deed.most = questions;
+  deed.score = *score;
+  deed.most = QuestionCount(lesson);
   AddStatement(parts_.statements, deed, now);
-  if (assignment.line_item.empty() || parts_.scores == nullptr) return;
+  SendScore(learner, name, lesson, now);
+}
+
+void Grading::SendScore(const Learner& learner, const std::string& name, const v1::Lesson& lesson,
+                        absl::Time now) const {
+  const Learner::Assignment& assignment = learner.assignments.at(name);
+  const auto score = ScoreOf(assignment, lesson);
+  if (!score.has_value() || assignment.line_item.empty() || parts_.scores == nullptr) return;
   json content = {{"userId", learner.user},
-                  {"scoreGiven", score},
-                  {"scoreMaximum", questions},
+                  {"scoreGiven", *score},
+                  {"scoreMaximum", QuestionCount(lesson)},
                   {"activityProgress", "Completed"},
                   {"gradingProgress", "FullyGraded"},
                   {"timestamp", absl::FormatTime("%Y-%m-%dT%H:%M:%E6SZ", now, absl::UTCTimeZone())}};
-  parts_.scores->Add({.id = Sha256Hex(absl::StrCat(KeyOf(learner), " ", name)),
+  parts_.scores->Add({.id = Sha256Hex(absl::StrCat(KeyOf(learner), " ", name, " ", assignment.line_item)),
                       .receiver = learner.platform,
                       .address = assignment.line_item,
                       .content = std::move(content)},
@@ -106,6 +129,12 @@ void Grading::ReportScore(const Learner& learner, const std::string& name, const
 bool Grading::Knows(const std::string& respondent) const {
   absl::MutexLock lock(&mutex_);
   return by_respondent_.contains(respondent);
+}
+
+bool Grading::Launched(const std::string& session, const std::string& respondent) const {
+  absl::MutexLock lock(&mutex_);
+  const auto key = by_respondent_.find(respondent);
+  return key != by_respondent_.end() && learners_.at(key->second).session == session;
 }
 
 void Grading::Answered(const v1::SubmitAnswerRequest& answer, absl::Time now) {
@@ -120,9 +149,12 @@ void Grading::Answered(const v1::SubmitAnswerRequest& answer, absl::Time now) {
   Learner& learner = learners_.at(key->second);
   const auto assignment = learner.assignments.find(answer.lesson());
   if (learner.session != answer.session_id() || assignment == learner.assignments.end()) return;
-  ReportAnswer(learner, answer, *lesson, *right, now);
+  std::string& given = assignment->second.given[answer.step()];
   const auto before = assignment->second.right.find(answer.step());
   const bool same = before != assignment->second.right.end() && before->second == *right;
+  if (same && given == ResponseOf(answer)) return;
+  given = ResponseOf(answer);
+  ReportAnswer(learner, answer, *lesson, *right, now);
   if (same) return;
   assignment->second.right[answer.step()] = *right;
   Save(learner);

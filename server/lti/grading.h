@@ -27,7 +27,8 @@ std::string KeyOf(const Platform& platform);
 //
 // The score of a lesson is the number of its questions whose last answer is right, by the lesson's file on this server;
 // what a page says of its own answers does not count. It is sent once all questions have an answer, and again at each
-// change. Answers of the test before a lesson do not count, those of the test after it do.
+// change, and to another line item when the lesson is opened from another activity. Answers of the test before a lesson
+// do not count, those of the test after it do.
 class Grading {
  public:
   // All outlive it. `url` is this server's origin. Either outbox is null if nothing is reported there.
@@ -45,6 +46,8 @@ class Grading {
                     const std::string& session, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
   // Notes an answer, if it is of a learner who was launched into this session.
   void Answered(const v1::SubmitAnswerRequest& answer, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
+  // True if the secret is of a learner who was launched into the session.
+  bool Launched(const std::string& session, const std::string& respondent) const ABSL_LOCKS_EXCLUDED(mutex_);
   // Returns the users of a session by their secrets.
   std::map<std::string, std::string> Users(const std::string& session) const ABSL_LOCKS_EXCLUDED(mutex_);
   // Adds a learner of an earlier server. INVALID_ARGUMENT if the text is damaged.
@@ -57,8 +60,10 @@ class Grading {
   void Save(const Learner& learner) const;
   void ReportAnswer(const Learner& learner, const v1::SubmitAnswerRequest& answer, const v1::Lesson& lesson, bool right,
                     absl::Time now) const;
-  // Reports the score of a lesson all of whose questions have an answer.
+  // States that a lesson all of whose questions have an answer is completed, and sends its score.
   void ReportScore(const Learner& learner, const std::string& name, const v1::Lesson& lesson, absl::Time now) const;
+  // Sends the score of such a lesson to its line item.
+  void SendScore(const Learner& learner, const std::string& name, const v1::Lesson& lesson, absl::Time now) const;
 
   const Parts parts_;
   const jobs::Records records_;

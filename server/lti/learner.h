@@ -14,8 +14,9 @@ namespace phrenic::lti {
 struct Learner {
   // A lesson that the learner has opened from the course.
   struct Assignment {
-    std::string line_item;      // empty: no score is sent
-    std::map<int, bool> right;  // the last answer to each question, by step
+    std::string line_item;                  // empty: no score is sent
+    std::map<int, bool> right;              // whether the last answer to each question is right, by step
+    std::map<int, std::string> given = {};  // these answers; not kept in the store
   };
 
   std::string platform;                                // key of the platform (KeyOf)

@@ -5,7 +5,6 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_split.h"
 #include "absl/time/clock.h"
 #include "server/crypto/secret.h"
 #include "server/lti/form.h"
@@ -35,16 +34,18 @@ std::string ScoresOf(const std::string& line_item) {
   return query == std::string::npos ? path + "/scores" : absl::StrCat(path, "/scores", line_item.substr(query));
 }
 
-// Returns the address of the next page; empty if there is none (RFC 8288).
+// Returns the address of the next page; empty if there is none (RFC 8288). An address may contain commas.
 std::string NextOf(const std::string& link) {
-  const std::vector<std::string> links = absl::StrSplit(link, ',');
-  for (const std::string& each : links) {
-    const std::size_t begin = each.find('<'), end = each.find('>');
-    if (begin == std::string::npos || end == std::string::npos || end < begin) continue;
-    const std::string rest = each.substr(end);
+  std::size_t begin = link.find('<');
+  while (begin != std::string::npos) {
+    const std::size_t end = link.find('>', begin);
+    if (end == std::string::npos) break;
+    const std::size_t next = link.find('<', end);
+    const std::string rest = link.substr(end, next == std::string::npos ? next : next - end);
     if (absl::StrContains(rest, "rel=\"next\"") || absl::StrContains(rest, "rel=next")) {
-      return each.substr(begin + 1, end - begin - 1);
+      return link.substr(begin + 1, end - begin - 1);
     }
+    begin = next;
   }
   return "";
 }
@@ -67,8 +68,8 @@ void AddMembers(const std::string& body, MemberNames& names) {
 absl::Status StatusOfHttp(const std::string& who, long status) {
   if (status >= 200 && status < 300) return absl::OkStatus();
   const std::string text = absl::StrCat(who, " answers with HTTP status ", status);
-  const bool passing = status == 408 || status == 425 || status == 429 || status >= 500;
-  return passing ? absl::UnavailableError(text) : absl::InvalidArgumentError(text);
+  const bool final = status == 400 || status == 404 || status == 422;
+  return final ? absl::InvalidArgumentError(text) : absl::UnavailableError(text);
 }
 
 void PlatformClient::ForgetToken(const std::string& scope) {
@@ -100,7 +101,10 @@ absl::StatusOr<std::string> PlatformClient::AccessToken(const std::string& scope
                                     {"client_assertion", *assertion},
                                     {"scope", scope}})});
   if (!answer.ok()) return answer.status();
-  if (absl::Status status = StatusOfHttp(OriginOf(platform_.token_url), answer->status); !status.ok()) return status;
+  // A wrong setting on either side can be corrected, so that no refusal of a token is final.
+  if (absl::Status status = StatusOfHttp(OriginOf(platform_.token_url), answer->status); !status.ok()) {
+    return absl::UnavailableError(absl::StrCat("no access token: ", status.message()));
+  }
   const json granted = json::parse(answer->body, nullptr, false);
   const std::string token = StringIn(granted, "access_token");
   const auto fits = [](unsigned char c) { return c > ' ' && c < 0x7F; };
@@ -144,15 +148,19 @@ absl::Status PlatformClient::SendScore(const std::string& line_item, const json&
       .status();
 }
 
-absl::StatusOr<MemberNames> PlatformClient::Members(const std::string& first) {
+absl::StatusOr<MemberNames> PlatformClient::Members(const std::string& first, absl::Time deadline) {
   MemberNames names;
   std::string address = first;
   for (int page = 0; page < kMostPages && !address.empty(); ++page) {
-    if (absl::Status status = CheckAddress(platform_, "context_memberships_url", address); !status.ok()) return status;
+    if (page > 0 && absl::Now() >= deadline) break;
+    absl::Status allowed = CheckAddress(platform_, "context_memberships_url", address);
+    if (!allowed.ok() && page == 0) return allowed;
+    if (!allowed.ok()) break;
     const auto answer =
         Call({.address = address, .headers = {"Accept: application/vnd.ims.lti-nrps.v2.membershipcontainer+json"}},
              kMembers);
-    if (!answer.ok()) return answer.status();
+    if (!answer.ok() && page == 0) return answer.status();
+    if (!answer.ok()) break;
     AddMembers(answer->body, names);
     address = NextOf(answer->link);
   }

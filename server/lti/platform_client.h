@@ -25,8 +25,8 @@ using ExchangeHttp = std::function<absl::StatusOr<access::HttpAnswer>(const acce
 using MemberNames = std::map<std::string, std::string>;
 
 // Thread-safe. Blocks the calling thread. Keeps an access token for each scope until shortly before it expires. All
-// addresses are checked by CheckAddress. Errors: UNAVAILABLE if a repeat may succeed; INVALID_ARGUMENT with the
-// platform's origin and status if it refuses.
+// addresses are checked by CheckAddress. Errors: UNAVAILABLE if a repeat may succeed, also if no access token is given;
+// INVALID_ARGUMENT with the platform's origin and status if it refuses for good.
 class PlatformClient {
  public:
   // `platform` and `key` outlive the client.
@@ -35,8 +35,9 @@ class PlatformClient {
 
   // Sends a score to a line item.
   absl::Status SendScore(const std::string& line_item, const nlohmann::json& score);
-  // Returns the names at the address "context_memberships_url": 20 pages and 10,000 members at most.
-  absl::StatusOr<MemberNames> Members(const std::string& address);
+  // Returns the names at the address "context_memberships_url": 20 pages and 10,000 members at most. Returns
+  // those of the pages before one that cannot be read, or that would begin after the deadline.
+  absl::StatusOr<MemberNames> Members(const std::string& address, absl::Time deadline = absl::InfiniteFuture());
 
  private:
   struct Token {
@@ -57,8 +58,9 @@ class PlatformClient {
   std::map<std::string, Token> tokens_ ABSL_GUARDED_BY(mutex_);  // by scope
 };
 
-// Returns OK for a status of success, INVALID_ARGUMENT for a refusal and UNAVAILABLE where a repeat may succeed (408,
-// 425, 429 and 5xx). `who` is the origin that answered.
+// Returns OK for a status of success, INVALID_ARGUMENT for 400, 404 and 422, which refuse this very content or address,
+// and UNAVAILABLE for all others, where a repeat may succeed: also 401 and 403, since a wrong setting can be corrected.
+// `who` is the origin that answered.
 absl::Status StatusOfHttp(const std::string& who, long status);
 
 }  // namespace phrenic::lti

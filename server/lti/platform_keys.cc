@@ -5,23 +5,34 @@
 namespace phrenic::lti {
 namespace {
 
-constexpr absl::Duration kKeptKeys = absl::Hours(1), kBetweenFetches = absl::Seconds(10);
+constexpr absl::Duration kKeptKeys = absl::Hours(1), kBetweenFetches = absl::Seconds(10), kOldestKeys = absl::Hours(24);
 
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const access::KeySet>> PlatformKeys::Keys(absl::Duration age, absl::Time now) {
   absl::MutexLock lock(&mutex_);
   if (keys_ != nullptr && now - fetched_ < age) return keys_;
-  if (keys_ == nullptr && now - fetched_ < kBetweenFetches) {
-    return absl::UnavailableError(absl::StrCat(url_, ": cannot be read; it is tried again in some seconds"));
+  absl::Status outcome =
+      absl::UnavailableError(absl::StrCat(url_, ": cannot be read; it is tried again in some seconds"));
+  if (now - tried_ >= kBetweenFetches) {
+    tried_ = now;
+    outcome = Renew(now);
   }
-  fetched_ = now;
+  if (outcome.ok() || (keys_ != nullptr && now - fetched_ < kOldestKeys)) return keys_;
+  keys_ = nullptr;
+  return outcome;
+}
+
+absl::Status PlatformKeys::Renew(absl::Time now) {
   const auto text = fetch_(url_);
-  if (!text.ok() && keys_ == nullptr) return text.status();
-  auto keys = access::KeySet::Parse(text.value_or(""));
-  if (keys != nullptr) keys_ = std::move(keys);
-  if (keys_ != nullptr) return keys_;
-  return absl::UnavailableError(absl::StrCat(url_, ": is not a JSON Web Key Set with an RSA or EC key"));
+  if (!text.ok()) return text.status();
+  auto keys = access::KeySet::Parse(*text);
+  if (keys == nullptr) {
+    return absl::UnavailableError(absl::StrCat(url_, ": is not a JSON Web Key Set with an RSA or EC key"));
+  }
+  keys_ = std::move(keys);
+  fetched_ = now;
+  return absl::OkStatus();
 }
 
 absl::StatusOr<std::string> PlatformKeys::Verified(std::string_view token, absl::Time now) {

@@ -15,8 +15,9 @@
 
 namespace phrenic::lti {
 
-// Thread-safe. Keeps a set for an hour; a token that no key has signed makes it fetch the set anew, at most every 10 s,
-// so that a platform may change its keys at any time and a forged token costs no request.
+// Thread-safe. Keeps a set for an hour; a token that no key has signed makes it fetch the set anew, so that a platform
+// may change its keys at any time. Fetches at most every 10 s, however many forged tokens come. While a fetch fails,
+// the last set is used until it is 24 hours old.
 class PlatformKeys {
  public:
   // Returns the document at an address; access::Fetch, or that of a test.
@@ -31,12 +32,14 @@ class PlatformKeys {
   // Returns the kept set, or a new one if that is older than `age`. Fetches with the mutex held: others wait for it.
   absl::StatusOr<std::shared_ptr<const access::KeySet>> Keys(absl::Duration age, absl::Time now)
       ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::Status Renew(absl::Time now) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const std::string url_;
   const FetchText fetch_;
   absl::Mutex mutex_;
   std::shared_ptr<const access::KeySet> keys_ ABSL_GUARDED_BY(mutex_);
-  absl::Time fetched_ ABSL_GUARDED_BY(mutex_) = absl::InfinitePast();
+  absl::Time fetched_ ABSL_GUARDED_BY(mutex_) = absl::InfinitePast();  // when keys_ came
+  absl::Time tried_ ABSL_GUARDED_BY(mutex_) = absl::InfinitePast();
 };
 
 }  // namespace phrenic::lti

@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 constexpr absl::Duration kLoginTime = absl::Minutes(10), kChoiceTime = absl::Minutes(30),
-                         kNamesKept = absl::Minutes(10), kNamesPause = absl::Minutes(1);
+                         kNamesKept = absl::Minutes(10), kNamesPause = absl::Minutes(1), kNamesTime = absl::Seconds(10);
 constexpr int kCookieSeconds = 600, kResponseSeconds = 300;
 constexpr std::size_t kMostCourses = 1000, kIdLength = 12, kCookieIdLength = 12;
 constexpr char kToolClaim[] = "https://purl.imsglobal.org/spec/lti/claim/";
@@ -29,8 +29,8 @@ std::string CookieName(const std::string& state) { return "phrenic_lti_" + state
 
 // Sent from a frame of the platform's page, hence SameSite=None; kept apart for each such page (Partitioned), so that
 // browsers that refuse the cookies of third parties keep it as well.
-std::string LoginCookie(const std::string& state) {
-  return absl::StrCat(CookieName(state), "=", state, "; Path=/lti; Max-Age=", kCookieSeconds,
+std::string CookieOfLogin(const std::string& state, const std::string& value, int seconds) {
+  return absl::StrCat(CookieName(state), "=", value, "; Path=/lti; Max-Age=", seconds,
                       "; HttpOnly; Secure; SameSite=None; Partitioned");
 }
 
@@ -143,7 +143,7 @@ Response Tool::OnLogin(const Fields& fields, absl::Time now) {
     question.emplace_back("lti_message_hint", FieldOf(fields, "lti_message_hint"));
   const char* joint = absl::StrContains(platform->login_url, "?") ? "&" : "?";
   Response response = Redirect(absl::StrCat(platform->login_url, joint, WriteForm(question)));
-  response.headers.emplace_back("Set-Cookie", LoginCookie(state));
+  response.headers.emplace_back("Set-Cookie", CookieOfLogin(state, state, kCookieSeconds));
   return response;
 }
 
@@ -191,7 +191,10 @@ Response Tool::OnLaunch(const Fields& fields, const std::string& cookies, absl::
   } else {
     response = OpenLesson(*choice, now);
   }
-  if (response.ok()) return *std::move(response);
+  if (response.ok()) {
+    response->headers.emplace_back("Set-Cookie", CookieOfLogin(FieldOf(fields, "state"), "", 0));  // it was used
+    return *std::move(response);
+  }
   spdlog::warn("lti: a launch was refused: {}", std::string(response.status().message()));
   return ErrorPage(response.status(), AllFramers());
 }
@@ -265,33 +268,39 @@ void Tool::NoteCourse(const std::string& session, std::size_t platform, const st
   absl::MutexLock lock(&mutex_);
   if (courses_.size() >= kMostCourses && !courses_.contains(session)) courses_.erase(courses_.begin());
   Course& course = courses_[session];
-  if (course.memberships != memberships) course = {platform, memberships, {}, absl::InfinitePast()};
+  if (course.memberships != memberships) course = {platform, memberships, {}, absl::InfinitePast(), false};
 }
 
-std::map<std::string, std::string> Tool::Names(const std::string& session, absl::Time now) {
+MemberNames Tool::NamesOfCourse(const std::string& session, absl::Time now) {
   Course course;
   {
     absl::MutexLock lock(&mutex_);
     const auto found = courses_.find(session);
     if (found == courses_.end()) return {};
+    if (found->second.reading || now - found->second.read <= kNamesKept) return found->second.names;
+    found->second.reading = true;
     course = found->second;
   }
-  if (now - course.read > kNamesKept) {
-    auto names = clients_[course.platform]->Members(course.memberships);
-    if (!names.ok()) {
-      absl::MutexLock lock(&mutex_);
-      courses_[session].read = now - kNamesKept + kNamesPause;  // so that an open table does not ask all the time
-      spdlog::warn("lti: the names of a course cannot be read: {}", std::string(names.status().message()));
-      return {};
-    }
-    course.names = *std::move(names);
-    course.read = now;
-    absl::MutexLock lock(&mutex_);
-    courses_[session] = course;
+  auto names = clients_[course.platform]->Members(course.memberships, absl::Now() + kNamesTime);
+  if (!names.ok()) {
+    spdlog::warn("lti: the names of a course cannot be read: {}", std::string(names.status().message()));
   }
+  absl::MutexLock lock(&mutex_);
+  const auto found = courses_.find(session);
+  if (found == courses_.end() || found->second.memberships != course.memberships) return {};
+  Course& kept = found->second;
+  kept.reading = false;
+  if (names.ok()) kept.names = *std::move(names);
+  kept.read = names.ok() ? now : now - kNamesKept + kNamesPause;  // so that an open table does not ask all the time
+  return kept.names;
+}
+
+std::map<std::string, std::string> Tool::Names(const std::string& session, absl::Time now) {
+  const MemberNames names = NamesOfCourse(session, now);
   std::map<std::string, std::string> named;
+  if (names.empty()) return named;
   for (const auto& [respondent, user] : grading_.Users(session)) {
-    if (const auto name = course.names.find(user); name != course.names.end()) named[respondent] = name->second;
+    if (const auto name = names.find(user); name != names.end()) named[respondent] = name->second;
   }
   return named;
 }

@@ -56,10 +56,15 @@ class Tool {
   // Errors are pages in plain words, and lines of the log.
   Response Handle(const Request& request, absl::Time now);
 
-  // Notes an answer of a learner; returns at once.
+  // Notes an answer of a learner. Reads the lesson's file, but waits for no other server.
   void Answered(const v1::SubmitAnswerRequest& answer, absl::Time now) { grading_.Answered(answer, now); }
+  // True if the secret is of a learner who was launched into the session. Returns at once.
+  bool Launched(const std::string& session, const std::string& respondent) const {
+    return grading_.Launched(session, respondent);
+  }
   // Returns the names of a session's learners by the secrets with which they answer, as the platform gives them; empty
-  // if it does not. Blocks; keeps names for ten minutes.
+  // if it does not. Keeps names for ten minutes. One call at a time asks the platform, and blocks for ten seconds, or
+  // twenty if a request begins late; others return the names of the time before meanwhile.
   std::map<std::string, std::string> Names(const std::string& session, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Continues with what an earlier server kept. A damaged record is in `lost`.
@@ -80,6 +85,7 @@ class Tool {
     std::string memberships;
     MemberNames names;
     absl::Time read = absl::InfinitePast();
+    bool reading = false;  // a call asks the platform now
   };
 
   Response OnLogin(const Fields& fields, absl::Time now);
@@ -91,6 +97,8 @@ class Tool {
   absl::StatusOr<Response> SendChoice(const Choice& choice, const Fields& fields, absl::Time now);
   void NoteCourse(const std::string& session, std::size_t platform, const std::string& memberships)
       ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns the names of all members of the session's course by their users; asks the platform if it is time.
+  MemberNames NamesOfCourse(const std::string& session, absl::Time now) ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status DeliverScore(const Parcel& parcel);
   // Returns all origins that may frame a page that belongs to no launch yet.
   std::vector<std::string> AllFramers() const;

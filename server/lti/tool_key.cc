@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "absl/strings/str_cat.h"
+#include "server/access/key_set.h"
 #include "server/crypto/sha256.h"
 #include "server/schema/file_bytes.h"
 
@@ -64,6 +65,7 @@ ToolKey::ToolKey() = default;
 ToolKey::~ToolKey() = default;
 
 absl::Status ToolKey::Add(const json& key) {
+  if (!access::HasReadableNumbers(key)) return absl::InvalidArgumentError("has a key whose numbers are not base64url");
   cjose_err error;
   const std::string text = key.dump();
   cjose_jwk_t* jwk = cjose_jwk_import(text.data(), text.size(), &error);

@@ -14,6 +14,7 @@ namespace {
 
 constexpr absl::Duration kLessonTime = absl::Hours(12), kLinkTime = absl::Hours(24);
 constexpr char kTeacher[] = "Teacher";  // under which all teachers of the course control the session
+constexpr char kLinkMaker[] = "lti";
 constexpr std::size_t kLinkIdLength = 8, kMostLinksKept = 10'000;
 
 }  // namespace
@@ -22,7 +23,7 @@ absl::StatusOr<std::shared_ptr<session::Session>> LtiClassroom::FindOrCreate(con
   auto found = table_.Find(visit.session);
   if (found.ok()) {
     if ((*found)->access()->account == visit.account) return found;
-    return absl::FailedPreconditionError("The session of this course belongs to somebody else on this server.");
+    return absl::FailedPreconditionError("The session of this course belongs to another account on this server.");
   }
   v1::CreateSessionRequest request;
   request.set_session_id(visit.session);
@@ -32,6 +33,7 @@ absl::StatusOr<std::shared_ptr<session::Session>> LtiClassroom::FindOrCreate(con
   session::Requester requester;
   requester.owner = requester.share = visit.account;
   auto made = table_.Create(request, *std::move(control), requester);
+  if (made.ok()) lent_.erase(visit.session);
   if (absl::IsResourceExhausted(made.status())) {
     return absl::UnavailableError(
         absl::StrCat("The server has no room for another class now. ", made.status().message()));
@@ -41,13 +43,20 @@ absl::StatusOr<std::shared_ptr<session::Session>> LtiClassroom::FindOrCreate(con
 
 absl::StatusOr<std::string> LtiClassroom::OwnerToken(session::Session& session, bool learners_control) {
   std::string token;
+  // Learners of a session that an earlier server made have a link if control was lent to them.
+  const auto access = session.access();
+  const bool linked = std::any_of(access->links.begin(), access->links.end(), [](const auto& link) {
+    return link.role == v1::ACCESS_ROLE_CONTROLLER && link.made_by == kLinkMaker;
+  });
+  const bool first = learners_control && !linked && !lent_.contains(session.id());
   const auto read = session.ChangeControl([&](session::ControlBook& book, absl::Time now) {
     token = book.state().owner.token;
-    const bool lend =
-        learners_control && book.state().policy == v1::CONTROL_POLICY_OWNER && book.state().holder.empty();
+    const bool lend = first && book.state().policy == v1::CONTROL_POLICY_OWNER && book.state().holder.empty();
     return lend ? book.HandToEverybody(token, now) : absl::OkStatus();
   });
   if (!read.ok()) return read.status();
+  if (lent_.size() >= kMostLinksKept) lent_.erase(lent_.begin());
+  if (learners_control) lent_.insert(session.id());
   return token;
 }
 
@@ -64,7 +73,8 @@ absl::StatusOr<std::string> LtiClassroom::LinkOf(session::Session& session, v1::
   }
   std::string secret = NewToken();
   const auto added = session.ChangeControl([&](session::ControlBook& book, absl::Time time) {
-    return book.AddLink({NewToken().substr(0, kLinkIdLength), Sha256Hex(secret), role, now + kLinkTime, "lti"}, time);
+    return book.AddLink({NewToken().substr(0, kLinkIdLength), Sha256Hex(secret), role, now + kLinkTime, kLinkMaker},
+                        time);
   });
   if (!added.ok()) return added.status();
   if (links_.size() >= kMostLinksKept) links_.clear();

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "absl/base/thread_annotations.h"
@@ -19,7 +20,8 @@ namespace phrenic::service {
 //
 // A teacher gets a token of the course's account with the role of an owner, and the control token of the session's
 // owner; a learner gets the session's join link, with the role of a viewer or a controller. Teachers alone control the
-// session until a lesson lets learners do so. Token and link end after twelve hours or more.
+// session until a lesson lets learners do so for the first time; when a teacher then takes control back, no later
+// launch lends it again. Token and link end after twelve hours or more.
 class LtiClassroom final : public lti::Classroom {
  public:
   // All outlive the classroom.
@@ -37,8 +39,10 @@ class LtiClassroom final : public lti::Classroom {
 
   absl::StatusOr<std::shared_ptr<session::Session>> FindOrCreate(const lti::Visit& visit)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // Returns the control token of the session's owner, and lets everybody control the session if learners may.
-  static absl::StatusOr<std::string> OwnerToken(session::Session& session, bool learners_control);
+  // Returns the control token of the session's owner, and lets everybody control the session when learners may for the
+  // first time.
+  absl::StatusOr<std::string> OwnerToken(session::Session& session, bool learners_control)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Returns the secret of a link of the role, which learners of the session share.
   absl::StatusOr<std::string> LinkOf(session::Session& session, v1::AccessRole role)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
@@ -46,6 +50,7 @@ class LtiClassroom final : public lti::Classroom {
   session::Table& table_;
   access::Accounts& accounts_;
   absl::Mutex mutex_;                                          // held while a session is made, so that it is made once
+  std::set<std::string> lent_ ABSL_GUARDED_BY(mutex_);         // sessions in which learners had control once
   std::map<std::string, Link> links_ ABSL_GUARDED_BY(mutex_);  // by session and role
 };
 

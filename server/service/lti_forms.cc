@@ -45,6 +45,8 @@ void LtiForms::AddTo(WebSettings& settings) {
 
 SessionService::Listener LtiForms::listener() {
   return {.answered = [this](const v1::SubmitAnswerRequest& answer) { tool_.Answered(answer, absl::Now()); },
+          .launched = [this](const std::string& session,
+                             const std::string& respondent) { return tool_.Launched(session, respondent); },
           .names = [this](const std::string& session) { return tool_.Names(session, absl::Now()); }};
 }
 

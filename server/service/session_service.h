@@ -30,9 +30,13 @@ class SessionService final {
   SessionService(session::Table& table, AccessGuard& guard, const PageTokens& page_tokens)
       : table_(table), guard_(guard), page_tokens_(page_tokens) {}
 
-  // What hears of answers and knows the names of those who answer. Both are thread-safe; null: nothing does.
+  // What hears of answers and knows those who answer. All are thread-safe; null: nothing does.
   struct Listener {
-    std::function<void(const v1::SubmitAnswerRequest& answer)> answered;  // returns at once
+    // Hears of each valid answer, also of those for which the session's book has no room. May read a lesson's file.
+    std::function<void(const v1::SubmitAnswerRequest& answer)> answered;
+    // True if the secret is of a learner whom a platform sent into the session: a class behind one address is not
+    // limited as other visitors of that address are. Returns at once.
+    std::function<bool(const std::string& session, const std::string& respondent)> launched;
     // Returns names by the secrets of respondents; may block for some seconds.
     std::function<std::map<std::string, std::string>(const std::string& session)> names;
   };

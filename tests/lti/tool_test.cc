@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
+#include <functional>
 #include <set>
 
 #include "absl/strings/escaping.h"
@@ -107,12 +109,15 @@ class ToolTest : public testing::Test {
     Options options{.url = kExampleUrl, .platforms = {kExamplePlatform}, .key_file = key};
     Settings settings = *ReadSettings(options);
     settings.lrs = {"https://lrs.example/xapi", "user", "secret"};
-    tool_ = std::make_unique<Tool>(
-        Tool::Parts{.settings = std::move(settings),
-                    .key = *ToolKey::Open(key),
-                    .lessons_folder = absl::StrCat(PHRENIC_SOURCE_DIR, "/web/public/lessons"),
-                    .classroom = &classroom_,
-                    .exchange = [this](const HttpRequest& request) { return school_.Answer(request); }});
+    tool_ =
+        std::make_unique<Tool>(Tool::Parts{.settings = std::move(settings),
+                                           .key = *ToolKey::Open(key),
+                                           .lessons_folder = absl::StrCat(PHRENIC_SOURCE_DIR, "/web/public/lessons"),
+                                           .classroom = &classroom_,
+                                           .exchange = [this](const HttpRequest& request) {
+                                             if (request.address == "https://school.example/members") on_members_();
+                                             return school_.Answer(request);
+                                           }});
   }
   ~ToolTest() override {
     tool_.reset();
@@ -192,6 +197,7 @@ class ToolTest : public testing::Test {
 
   const std::string folder_ = absl::StrCat(testing::TempDir(), "/phrenic-lti-", getpid());
   School school_;
+  std::function<void()> on_members_ = [] {};
   OpenClassroom classroom_;
   std::unique_ptr<Tool> tool_;
 };
@@ -229,7 +235,9 @@ TEST_F(ToolTest, AcceptsATokenOnce) {
   json claims = ExampleClaims();
   claims["nonce"] = begun.nonce;
   const std::string token = school_.Sign(claims);
-  EXPECT_EQ(Post(begun, token).status, 303U);
+  const Response first = Post(begun, token);
+  EXPECT_EQ(first.status, 303U);
+  EXPECT_THAT(Header(first, "Set-Cookie"), HasSubstr("=; Path=/lti; Max-Age=0;"));
   EXPECT_THAT(Post(begun, token).text, HasSubstr("was used already"));
   EXPECT_THAT(Post(Begin(), token).text, HasSubstr("(nonce)"));  // the same token with another state
 }
@@ -310,6 +318,17 @@ TEST_F(ToolTest, SendsTheScoreWhenAllQuestionsAreAnsweredAndAgainWhenItChanges) 
   EXPECT_TRUE(access::KeySet::Parse(published.dump())->Verified(FieldOf(form, "client_assertion")).ok());
 }
 
+TEST_F(ToolTest, SendsTheScoreAlsoToTheLineItemOfAnotherActivity) {
+  const int most = AnswerAll(Launch(ExampleClaims()), true);
+  ASSERT_EQ(school_.To("https://school.example/items/3/scores?type=1", 1).size(), 1U);
+  json again = ExampleClaims();
+  again[kExampleEndpoint]["lineitem"] = "https://school.example/items/4";
+  Launch(again);
+  const auto sent = school_.To("https://school.example/items/4/scores", 1);
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_EQ(json::parse(sent.back().body)["scoreGiven"], most);
+}
+
 TEST_F(ToolTest, StatesWhatALearnerDoes) {
   const Response launched = Launch(ExampleClaims());
   const auto questions = static_cast<std::size_t>(AnswerAll(launched, true));
@@ -365,6 +384,24 @@ TEST_F(ToolTest, GivesTheNamesOfTheCoursesMembers) {
   tool_->Names(classroom_.last.session, kExampleNow);
   EXPECT_EQ(school_.To("https://school.example/members2", 1).size(), 1U);  // kept
   EXPECT_TRUE(tool_->Names("thorax", kExampleNow).empty());
+}
+
+TEST_F(ToolTest, AsksForTheNamesOfACourseOneCallAtATime) {
+  Launch(ExampleClaims());
+  int others = 0;
+  on_members_ = [&] {
+    ++others;
+    EXPECT_TRUE(tool_->Names(classroom_.last.session, kExampleNow).empty());  // returns while the first call waits
+  };
+  EXPECT_EQ(tool_->Names(classroom_.last.session, kExampleNow).size(), 1U);
+  EXPECT_EQ(others, 1);
+}
+
+TEST_F(ToolTest, RefusesAKeyWithUnreadableNumbers) {
+  const std::string file = folder_ + "/bad.json";
+  std::ofstream(file) << R"({"keys":[{"kty":"RSA","kid":"1","n":"!","e":"AQAB","d":"AQAB"}]})";
+  const auto key = ToolKey::Open(file);
+  EXPECT_THAT(std::string(key.status().message()), HasSubstr("not base64url"));
 }
 
 TEST_F(ToolTest, SendsTheTeachersChoiceBackSignedAndOnce) {

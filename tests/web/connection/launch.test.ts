@@ -41,6 +41,31 @@ test("ASecondLaunchReplacesTheFirst", () => {
   expect(new Identity(storage).respondent).not.toBe(respondent);
 });
 
+test("TheNextPageOfALaunchKeepsWhatWasAddedSince", () => {
+  for (const fragment of [`account=${join}&control=${respondent}`, `join=${join}&respondent=${respondent}`]) {
+    const tab = memory();
+    const address = new URL(`http://host/?session=s#launch=1&${fragment}`);
+    const identity = new Identity(userStorage(address, memory(), tab));
+    identity.storeToken("s", "handed-over");
+    identity.storeToken("fork", "of-a-fork");
+    new Credentials(tab).addJoinLink("1".repeat(32));
+    userStorage(new URL(`http://host/?session=fork#launch=1&${fragment}`), memory(), tab);
+    expect(identity.tokenOf("s")).toBe("handed-over");
+    expect(identity.tokenOf("fork")).toBe("of-a-fork");
+    expect(new Credentials(tab).joinLinks).toContain("1".repeat(32));
+  }
+});
+
+test("AnotherLaunchOfATeacherAddsItsTokenAndALearnerGetsNone", () => {
+  const tab = memory();
+  const launch = (fragment: string) => userStorage(new URL(`http://host/${fragment}`), memory(), tab);
+  launch(`?session=a#launch=1&account=${join}&control=${respondent}`);
+  const identity = new Identity(launch(`?session=b#launch=1&account=${respondent}&control=${join}`));
+  expect([identity.tokenOf("a"), identity.tokenOf("b")]).toEqual([respondent, join]);
+  launch(`?session=a#launch=1&join=${join}&respondent=${respondent}`);
+  expect([identity.tokenOf("a"), identity.tokenOf("b")]).toEqual(["", ""]);
+});
+
 test("WhatIsNoSecretIsNotKept", () => {
   const storage = userStorage(new URL("http://host/#launch=1&join=<b>&account=x"), memory(), memory());
   expect(new Credentials(storage).joinLinks).toEqual([]);

@@ -20,6 +20,8 @@ export class ClassResults {
   private readonly fault = make("div");
   private readonly names: HTMLInputElement;
   private readonly tools: HTMLElement;
+  /** Requests without an answer. */
+  private pending = 0;
   private timer: ReturnType<typeof setInterval> | undefined;
   private shown: { name: string; lesson: Lesson; step: number } | undefined;
   private answers: ClassAnswer[] = [];
@@ -49,13 +51,17 @@ export class ClassResults {
     clearInterval(this.timer);
     this.timer = undefined;
     if (!this.element.open || this.shown === undefined) return;
-    this.timer = setInterval(() => this.refresh(), refreshInterval);
+    // A server that reads the names of a course answers late: a timer asks only after the last answer.
+    this.timer = setInterval(() => {
+      if (this.pending === 0) void this.refresh();
+    }, refreshInterval);
     void this.refresh();
   }
 
   private async refresh(): Promise<void> {
     const { shown } = this;
     if (shown === undefined || !this.element.isConnected) return this.stop();
+    this.pending += 1;
     try {
       const answers = await this.list(shown.name, this.names.checked);
       if (shown !== this.shown) return;
@@ -64,6 +70,8 @@ export class ClassResults {
       this.tools.hidden = false;
     } catch (error) {
       this.refuse((error as Error).message);
+    } finally {
+      this.pending -= 1;
     }
   }
 
