@@ -133,9 +133,11 @@ TEST_F(FittedThorax, SaysWhatAVolumeCannotTell) {
 TEST_F(FittedThorax, IsTheSameOnAnyNumberOfThreadsAndStopsWhenAsked) {
   fit::MeasuredFile volume = RecordingOf(fit::Measured::kVolume, 0.02, 5);
   const AllBreathData data = DataOf({volume});
-  const auto one = Fitted(data, {"diaphragm_activation"}, 1, 1), three = Fitted(data, {"diaphragm_activation"}, 1, 3);
-  ASSERT_TRUE(one.ok() && three.ok());
-  EXPECT_EQ(one->numbers[0].value, three->numbers[0].value);
+  const std::vector<std::string> both = {"diaphragm_activation", "intercostal_activation"};
+  const auto one = Fitted(data, both, 0, 1), two = Fitted(data, both, 0, 2);  // both expand at the start
+  ASSERT_TRUE(one.ok() && two.ok());
+  for (size_t k = 0; k < 2; ++k) EXPECT_EQ(one->numbers[k].standard_error, two->numbers[k].standard_error);
+  EXPECT_EQ(one->correlation(0, 1), two->correlation(0, 1));
   const v1::Parameters start = Drive(0.07, 0.17, 0.42);
   const auto cancelled = FitBreath(*subject_, start, {PriorOf(*ReadVaried("diaphragm_activation"), start)}, data, {},
                                    [](double, const std::string&) { return false; });
@@ -144,11 +146,13 @@ TEST_F(FittedThorax, IsTheSameOnAnyNumberOfThreadsAndStopsWhenAsked) {
 
 TEST_F(FittedThorax, StopsAtABoundAndSaysWhatCannotBeMet) {
   const AllBreathData data = BothRecordings();
-  const auto fit = Fitted(data, {"diaphragm_activation:0:0.03"}, 2);
+  const auto fit = Fitted(data, {"diaphragm_activation:0:0.03"}, 4);
   ASSERT_TRUE(fit.ok()) << fit.status();
   EXPECT_TRUE(fit->numbers[0].at_bound);
   ASSERT_FALSE(fit->doubts.empty());
   EXPECT_THAT(fit->doubts[0], HasSubstr("cannot make this breath"));
+  EXPECT_THAT(fit->doubts.back(), HasSubstr("diaphragm_activation is at its bound, 0.03"));
+  EXPECT_TRUE(fit->converged) << "at a bound";
   EXPECT_EQ(Fitted(data, {"diaphragm_activation", "diaphragm_activation"}).status().code(),
             absl::StatusCode::kInvalidArgument);
   EXPECT_EQ(Fitted({}, {"diaphragm_activation"}).status().code(), absl::StatusCode::kInvalidArgument);
