@@ -148,7 +148,8 @@ std::string TextOf(const SimulatedFit& fit, const std::string& source) {
   for (const fit::FittedQuantity& each : fit.breath.numbers) {
     if (each.number.what == "of the data") continue;
     absl::StrAppend(&names, names.empty() ? "" : ", ",
-                    absl::StrFormat("%s +- %.2g", each.number.name, each.standard_error));
+                    each.at_bound ? absl::StrCat(each.number.name, " at its bound")
+                                  : absl::StrFormat("%s +- %.2g", each.number.name, each.standard_error));
   }
   return calibrate::PresetText(preset, absl::StrCat("Written by phrenic fit from ", source, ": ", names));
 }

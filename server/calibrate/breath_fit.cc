@@ -7,10 +7,12 @@
 #include <cmath>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/calibrate/bounded_descent.h"
 #include "server/physiology/plan.h"
 
 namespace phrenic::calibrate {
@@ -20,10 +22,7 @@ using fit::Part;
 using physiology::Recording;
 
 constexpr double kDifference = 0.15;  // of the derivatives, in prior standard deviations
-constexpr double kSmallStep = 0.03;   // that ends the search, in standard errors
 constexpr double kBadlyMet = 2.5;     // residuals in standard errors
-constexpr int kMostTries = 4;         // of a step, each shorter
-constexpr double kLargestStep = 1.5;  // in prior standard deviations
 const char* const kDerived[] = {"tidal-volume", "right-dome", "left-dome", "abdominal-share"};
 
 const Target* TargetNamed(std::string_view name) {
@@ -122,6 +121,16 @@ class BreathProblem {
     Eigen::VectorXd sds(size());
     for (Eigen::Index k = 0; k < size(); ++k) sds[k] = number(k).sd;
     return sds;
+  }
+  Eigen::VectorXd Lows() const {
+    Eigen::VectorXd lows(size());
+    for (Eigen::Index k = 0; k < size(); ++k) lows[k] = number(k).low;
+    return lows;
+  }
+  Eigen::VectorXd Highs() const {
+    Eigen::VectorXd highs(size());
+    for (Eigen::Index k = 0; k < size(); ++k) highs[k] = number(k).high;
+    return highs;
   }
   Eigen::VectorXd Bounded(Eigen::VectorXd x) const {
     for (Eigen::Index k = 0; k < size(); ++k) x[k] = std::clamp(x[k], number(k).low, number(k).high);
@@ -253,7 +262,6 @@ void DoubtBreath(const AllBreathData& data, BreathFit& fit) {
         each.kind.source, each.kind.kind, each.after / each.kind.per_unit, each.kind.unit,
         each.kind.sd / each.kind.per_unit, each.kind.unit));
   }
-  if (!fit.converged) fit.doubts.push_back("the search had not settled at its limit of iterations");
 }
 
 absl::Status CheckBreathTask(const physiology::Subject& subject, const std::vector<FittedParameter>& parameters,
@@ -270,66 +278,86 @@ absl::Status CheckBreathTask(const physiology::Subject& subject, const std::vect
       "the scene has no pressures, so that nothing breathes by its activations: fit a scene such as thorax");
 }
 
-// The search's place, and the breaths there.
-struct Descending {
-  const BreathProblem& problem;
-  Simulations& simulations;
-  const BreathFitOptions& options;
-  Eigen::VectorXd x = {};
-  Recording now = {};
-  std::vector<Recording> moved = {};  // the differences
-  Eigen::MatrixXd curvature = {};
-  Eigen::VectorXd descent = {};
-  double damping = 0;
+// The sum of squares of a fit, with the breath at the search's place.
+class BreathSquares : public SquaresProblem {
+ public:
+  BreathSquares(const BreathProblem& problem, Simulations& simulations)
+      : problem_(problem), simulations_(simulations), sds_(problem.Sds()), x_(problem.Bounded(problem.Means())) {}
 
-  absl::Status Begin() {
-    x = problem.Bounded(problem.Means());
-    auto first = simulations.Run({x}, 0);
-    if (!first.ok()) return first.status();
-    now = std::move(first->front());
-    if (std::isfinite(problem.Value(now, x))) return absl::OkStatus();
+  absl::StatusOr<double> Begin() {
+    const absl::StatusOr<double> sum = Try(x_.cwiseQuotient(sds_));
+    if (!sum.ok()) return sum;
+    Accept();
+    if (std::isfinite(*sum)) return sum;
     return absl::FailedPreconditionError(
         "the breath that the fit begins with lacks what was measured: begin with another --preset");
   }
 
-  absl::Status Expand(int iteration) {
-    auto there = simulations.Run(problem.Differences(x), Done(iteration));
+  absl::StatusOr<double> Try(const Eigen::VectorXd& scaled) override {
+    tried_ = problem_.Bounded(scaled.cwiseProduct(sds_));
+    auto next = simulations_.Run({tried_}, done);
+    if (!next.ok()) return next.status();
+    next_ = std::move(next->front());
+    return problem_.Value(next_, tried_);
+  }
+  void Accept() override {
+    x_ = tried_;
+    now_ = std::move(next_);
+  }
+  absl::StatusOr<Quadratic> Expand() override {
+    auto there = simulations_.Run(problem_.Differences(x_), done);
     if (!there.ok()) return there.status();
-    moved = *std::move(there);
-    problem.Expand(now, moved, x, curvature, descent);
-    return absl::OkStatus();
+    moved_ = *std::move(there);
+    Quadratic at;
+    problem_.Expand(now_, moved_, x_, at.curvature, at.descent);
+    return at;
   }
 
-  Eigen::VectorXd Proposed() const {
-    Eigen::MatrixXd damped = curvature;
-    damped.diagonal() *= 1 + damping;
-    Eigen::VectorXd step = damped.ldlt().solve(descent);
-    step *= std::min(1.0, kLargestStep / std::max(step.cwiseAbs().maxCoeff(), 1e-12));
-    return problem.Bounded(x + step.cwiseProduct(problem.Sds()));
-  }
+  const Eigen::VectorXd& x() const { return x_; }
+  const Recording& now() const { return now_; }
+  const std::vector<Recording>& moved() const { return moved_; }  // the differences
 
-  // Returns false if the place is found.
-  absl::StatusOr<bool> Step(int iteration) {
-    if (absl::Status status = Expand(iteration); !status.ok()) return status;
-    const double value = problem.Value(now, x);
-    for (int tries = 0; tries < kMostTries; ++tries) {
-      const Eigen::VectorXd to = Proposed(), taken = (to - x).cwiseQuotient(problem.Sds());
-      if (std::sqrt(taken.dot(curvature * taken)) < kSmallStep) return false;
-      auto next = simulations.Run({to}, Done(iteration));
-      if (!next.ok() && !absl::IsFailedPrecondition(next.status())) return next.status();
-      if (next.ok() && problem.Value(next->front(), to) < value) {
-        x = to;
-        now = std::move(next->front());
-        damping = damping > 0.01 ? damping / 10 : 0;
-        return true;
-      }
-      damping = std::max(10 * damping, 0.01);
-    }
-    return false;
-  }
+  double done = 0;  // of the fit, for the progress
 
-  double Done(int iteration) const { return static_cast<double>(iteration) / options.iterations; }
+ private:
+  const BreathProblem& problem_;
+  Simulations& simulations_;
+  const Eigen::VectorXd sds_;
+  Eigen::VectorXd x_, tried_;
+  Recording now_, next_;
+  std::vector<Recording> moved_;
 };
+
+// Returns how the search ended, with the quadratic at its end.
+absl::StatusOr<Settling> Descend(BreathSquares& squares, BoundedDescent& search, int iterations) {
+  for (int i = 0; i < iterations; ++i) {
+    squares.done = static_cast<double>(i) / iterations;
+    const absl::StatusOr<Settling> settling = search.Step();
+    if (!settling.ok() || *settling != Settling::kGoesOn) return settling;
+  }
+  squares.done = 1;
+  if (absl::Status status = search.Expand(); !status.ok()) return status;
+  return Settling::kGoesOn;
+}
+
+// Says why the search has not settled, and what ended at its bound.
+void DoubtSearch(Settling settling, int without_sum, BreathFit& fit) {
+  if (settling == Settling::kGoesOn) fit.doubts.push_back("the search had not settled at its limit of iterations");
+  if (settling == Settling::kStuck) {
+    fit.doubts.push_back(
+        absl::StrFormat("the search has not settled: no shorter step came nearer to the data (%d of its last trials "
+                        "diverged, or lacked "
+                        "what was measured); begin with another --preset, or fit narrower --parameters NAME:LOW:HIGH",
+                        without_sum));
+  }
+  for (const fit::FittedQuantity& each : fit.numbers) {
+    if (!each.at_bound) continue;
+    fit.doubts.push_back(absl::StrFormat(
+        "%s is at its bound, %.4g%s: the data ask for more than it allows; its standard error is without "
+        "the bound",
+        each.number.name, each.value / each.number.per_unit, each.number.unit == "1" ? "" : " " + each.number.unit));
+  }
+}
 
 }  // namespace
 
@@ -349,30 +377,30 @@ absl::StatusOr<BreathFit> FitBreath(const physiology::Subject& subject, const v1
   if (absl::Status status = CheckBreathTask(subject, parameters, data); !status.ok()) return status;
   const BreathProblem problem(parameters, data);
   Simulations simulations(subject, start, parameters, options, progress);
-  Descending at{problem, simulations, options};
-  if (absl::Status status = at.Begin(); !status.ok()) return status;
-  const Recording before = at.now;
-  BreathFit fit;
-  for (int i = 0; i < options.iterations && !fit.converged; ++i) {
-    const absl::StatusOr<bool> moved = at.Step(i);
-    if (!moved.ok()) return moved.status();
-    fit.converged = !*moved;
-  }
-  if (!fit.converged) {
-    if (absl::Status status = at.Expand(options.iterations); !status.ok()) return status;
-  }
-  const Eigen::VectorXd& x = at.x;
+  BreathSquares squares(problem, simulations);
+  const absl::StatusOr<double> sum = squares.Begin();
+  if (!sum.ok()) return sum.status();
+  const Recording before = squares.now();
   const Eigen::VectorXd sds = problem.Sds();
-  const Eigen::MatrixXd scaled = at.curvature.ldlt().solve(Eigen::MatrixXd::Identity(x.size(), x.size()));
+  BoundedDescent search(squares, squares.x().cwiseQuotient(sds), *sum, problem.Lows().cwiseQuotient(sds),
+                        problem.Highs().cwiseQuotient(sds));
+  const absl::StatusOr<Settling> settling = Descend(squares, search, options.iterations);
+  if (!settling.ok()) return settling.status();
+  BreathFit fit;
+  fit.converged = *settling == Settling::kSettled;
+  const Eigen::VectorXd& x = squares.x();
+  const Eigen::MatrixXd scaled =
+      search.quadratic().curvature.ldlt().solve(Eigen::MatrixXd::Identity(x.size(), x.size()));
   const Eigen::MatrixXd covariance = sds.asDiagonal() * scaled * sds.asDiagonal();
   const Eigen::VectorXd errors = covariance.diagonal().cwiseSqrt(), inverse = errors.cwiseInverse();
   for (Eigen::Index k = 0; k < x.size(); ++k) fit.numbers.push_back(QuantityOfFit(problem.number(k), x[k], errors[k]));
   fit.correlation = inverse.asDiagonal() * covariance * inverse.asDiagonal();
-  fit.derived = DeriveFrom(problem, before, at.now, at.moved, x, covariance);
-  fit.kinds = ReportKinds(problem, before, at.now, x);
+  fit.derived = DeriveFrom(problem, before, squares.now(), squares.moved(), x, covariance);
+  fit.kinds = ReportKinds(problem, before, squares.now(), x);
   fit.parameters = simulations.At(x);
   fit.breaths = simulations.simulated();
   DoubtBreath(data, fit);
+  DoubtSearch(*settling, search.without_sum(), fit);
   return fit;
 }
 

@@ -2,9 +2,10 @@
 // the preset that is found has been simulated.
 //
 // Minimises  sum_i w_i (d_i - m_i(p, q))^2 + sum_k ((p_k - prior_k)/sd_k)^2 + sum_j (q_j/sd_j)^2
-// over the parameters p, within their bounds, and the data's own numbers q, by Gauss and Newton's method with
-// Levenberg's damping. The derivatives by p are differences of breaths, simulated side by side on several threads, each
-// from rest, so that the result does not depend on their number. The covariance is the inverse of half the curvature.
+// over the parameters p, within their bounds, and the data's own numbers q, by bounded_descent.h. The derivatives by p
+// are differences of breaths, simulated side by side on several threads, each from rest, so that the result does not
+// depend on their number. The covariance is the inverse of half the curvature, as if there were no bounds: the standard
+// error of a number at its bound (at_bound, and a doubt) is without this bound.
 #ifndef PHRENIC_SERVER_CALIBRATE_BREATH_FIT_H_
 #define PHRENIC_SERVER_CALIBRATE_BREATH_FIT_H_
 
@@ -38,7 +39,7 @@ struct BreathFit {
   std::vector<std::string> doubts;
   v1::Parameters parameters;  // of the breath, every field set
   int breaths = 0;            // that were simulated
-  bool converged = false;     // false: the limit of iterations ended the search
+  bool converged = false;  // false: the limit of iterations, or a place from which no trial went down, ended the search
 };
 
 struct BreathFitOptions {

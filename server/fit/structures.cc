@@ -155,8 +155,9 @@ absl::StatusOr<Points> BendOnto(const LungTissue& tissue, const Mesh& target) {
     const double weight = stiffness * tissue.areas().sum() / static_cast<double>(pairs.from.cols());
     absl::StatusOr<Points> next = tissue.SolveThrough(pairs.from, pairs.vectors, weight);
     if (!next.ok()) return next.status();
-    if (LeastVolume(tissue, *next) < kLeastOfVolume) {  // go on as stiff as did not fold
-      stiffness /= growth * growth;
+    if (LeastVolume(tissue, *next) < kLeastOfVolume) {
+      if (growth == 1) break;  // the next round would solve the same
+      stiffness /= growth;     // as stiff as did not fold
       growth = 1;
       continue;
     }

@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 class FittedThorax : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    model_ = CompileShipped("thorax", 20);
+    model_ = CompileShipped("thorax", 30);
     subject_ = *physiology::Subject::Of(*model_);
     const auto made = Simulated(Drive(0.1, 0.28, 0.36));
     ASSERT_TRUE(made.ok()) << made.status();
@@ -31,6 +31,7 @@ class FittedThorax : public testing::Test {
   static v1::Parameters Drive(double diaphragm, double intercostals, double inspiratory_share) {
     v1::Parameters parameters = model_->parameters;
     parameters.set_breath_length(2);
+    parameters.set_time_step(1.4 * parameters.time_step());  // the laws hold for coarser breaths too
     parameters.set_diaphragm_activation(diaphragm);
     parameters.set_intercostal_activation(intercostals);
     parameters.set_inspiratory_share(inspiratory_share);
@@ -123,19 +124,24 @@ TEST_F(FittedThorax, SaysWhatAVolumeCannotTell) {
   fit::MeasuredFile volume = RecordingOf(fit::Measured::kVolume, 0.02, 5);
   volume.error = 0.02;
   const std::vector<std::string> both = {"diaphragm_activation", "intercostal_activation"};
-  const auto alone = Fitted(DataOf({volume}), both, 1), with_dome = Fitted(BothRecordings(), both, 1);
+  const auto alone = Fitted(DataOf({volume}), both, 0), with_dome = Fitted(BothRecordings(), both, 0);
   ASSERT_TRUE(alone.ok() && with_dome.ok()) << alone.status() << with_dome.status();
   EXPECT_LT(alone->correlation(0, 1), -0.5);
   for (size_t k = 0; k < 2; ++k) EXPECT_LT(with_dome->numbers[k].standard_error, alone->numbers[k].standard_error);
-  EXPECT_NEAR(alone->derived[0].value, with_dome->derived[0].value, 0.1) << "the tidal volume is told by both";
+  const auto relative = [](const fit::FittedQuantity& each) { return each.standard_error / each.value; };
+  for (size_t k = 0; k < 2; ++k) {
+    EXPECT_LT(relative(alone->derived[0]), 0.5 * relative(alone->numbers[k])) << "it tells the tidal volume";
+  }
 }
 
 TEST_F(FittedThorax, IsTheSameOnAnyNumberOfThreadsAndStopsWhenAsked) {
   fit::MeasuredFile volume = RecordingOf(fit::Measured::kVolume, 0.02, 5);
   const AllBreathData data = DataOf({volume});
-  const auto one = Fitted(data, {"diaphragm_activation"}, 1, 1), three = Fitted(data, {"diaphragm_activation"}, 1, 3);
-  ASSERT_TRUE(one.ok() && three.ok());
-  EXPECT_EQ(one->numbers[0].value, three->numbers[0].value);
+  const std::vector<std::string> both = {"diaphragm_activation", "intercostal_activation"};
+  const auto one = Fitted(data, both, 0, 1), two = Fitted(data, both, 0, 2);  // both expand at the start
+  ASSERT_TRUE(one.ok() && two.ok());
+  for (size_t k = 0; k < 2; ++k) EXPECT_EQ(one->numbers[k].standard_error, two->numbers[k].standard_error);
+  EXPECT_EQ(one->correlation(0, 1), two->correlation(0, 1));
   const v1::Parameters start = Drive(0.07, 0.17, 0.42);
   const auto cancelled = FitBreath(*subject_, start, {PriorOf(*ReadVaried("diaphragm_activation"), start)}, data, {},
                                    [](double, const std::string&) { return false; });
@@ -149,6 +155,7 @@ TEST_F(FittedThorax, StopsAtABoundAndSaysWhatCannotBeMet) {
   EXPECT_TRUE(fit->numbers[0].at_bound);
   ASSERT_FALSE(fit->doubts.empty());
   EXPECT_THAT(fit->doubts[0], HasSubstr("cannot make this breath"));
+  EXPECT_THAT(fit->doubts.back(), HasSubstr("diaphragm_activation is at its bound, 0.03"));
   EXPECT_EQ(Fitted(data, {"diaphragm_activation", "diaphragm_activation"}).status().code(),
             absl::StatusCode::kInvalidArgument);
   EXPECT_EQ(Fitted({}, {"diaphragm_activation"}).status().code(), absl::StatusCode::kInvalidArgument);

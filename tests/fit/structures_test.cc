@@ -43,8 +43,8 @@ TEST(Structures, OfAScaledTemplateGiveItsScale) {
   }
 }
 
-// A template with a hollow in its side and a twist is no scaled template; bent, it is met to 0.6 of that or less (0.43
-// and 0.53), without a fold, and a template that fits needs no bend.
+// A template with a hollow in its side and a twist is no scaled template; bent, it is met to half of that or less (0.35
+// and 0.42), without a fold, and a template that fits needs no bend.
 TEST(Structures, AreMetByBendingWhereScalingCannot) {
   auto structures = ScaledLungs({1.05, 0.95, 1.1}, {0.02, -0.01, 0.3});
   for (PersonStructure& each : structures) {
@@ -63,13 +63,13 @@ TEST(Structures, AreMetByBendingWhereScalingCannot) {
   ASSERT_TRUE(bent.ok()) << bent.status();
   const auto after = CompareStructures(*bent, structures);
   for (size_t i = 0; i < 2; ++i) {
-    std::printf("%s: scaled %.2f mm, bent %.2f, p95 %.2f; by %.1f mm, volume %.2f of before at least\n",
+    std::printf("%s: scaled %.2f mm, bent %.2f, p95 %.2f of %.2f; by %.1f mm, volume %.2f of before at least\n",
                 scaled[i].name.c_str(), 1e3 * scaled[i].mean, 1e3 * after[i].mean, 1e3 * after[i].p95,
-                1e3 * bent->most[i], bent->volume[i]);
-    EXPECT_LT(after[i].mean, 0.6 * scaled[i].mean);
-    EXPECT_LT(after[i].p95, 0.6 * scaled[i].p95);
+                1e3 * scaled[i].p95, 1e3 * bent->most[i], bent->volume[i]);
+    EXPECT_LT(after[i].mean, 0.5 * scaled[i].mean);
+    EXPECT_LT(after[i].p95, 0.5 * scaled[i].p95);
     EXPECT_LE(bent->most[i], 1.05 * kMostBend);
-    EXPECT_GT(bent->volume[i], 0.1);
+    EXPECT_GE(bent->volume[i], 0.2);
   }
   RegisteredLungs same;
   const auto unbent = BendLungs(GeneratedLungs(), same, ScaledLungs({1, 1, 1}, {0, 0, 0}));

@@ -7,6 +7,7 @@ import resource
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import urllib.request
 from html import unescape
@@ -156,13 +157,14 @@ class ExamplesTest(unittest.TestCase):
     def page(self, path: Path, folder: str) -> str:
         words = [sys.executable, "-m", "nbconvert", "--to", "html", "--execute", "--output-dir", folder, *ALONE, str(path)]
         environment = {**os.environ, "IPYTHONDIR": folder, "JUPYTER_RUNTIME_DIR": folder, "MPLCONFIGDIR": folder}
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
         done = subprocess.run(words, capture_output=True, text=True, timeout=200, env=environment, cwd=REPOSITORY)
         self.assertEqual(done.returncode, 0, done.stderr[-3000:])
         used = resource.getrusage(resource.RUSAGE_CHILDREN)  # other programs do not lengthen it
         seconds = used.ru_utime + used.ru_stime - before.ru_utime - before.ru_stime
         self.assertGreater(seconds, 1)
         self.assertLess(seconds, 60)
+        self.assertLess(time.monotonic() - began, 120, "it waits, though it uses little of the processor")
         return Path(folder, path.stem + ".html").read_text()
 
     @needs("nbconvert", "ipykernel", "matplotlib")

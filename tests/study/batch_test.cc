@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <set>
+#include <stdexcept>
+#include <thread>
 
 #include "server/stream/codecs/wire.h"
 #include "server/study/batch/run_all.h"
+#include "server/study/batch/run_pool.h"
 #include "tests/study/run_on.h"
 
 namespace phrenic::study {
@@ -202,6 +205,22 @@ TEST(Batch, EndsWhenItIsCancelledOrNotTaken) {
   const auto shorter = Batch::Make(request, kCompileRow, kGoOn);
   EXPECT_EQ(RunAll(*shorter, take_two, kGoOn).code(), absl::StatusCode::kCancelled);
   EXPECT_EQ(taken, 2);
+}
+
+// An exception reaches the caller and ends the runs, though most of them wait for room by then.
+TEST(Batch, EndsWhenTheCallerThrows) {
+  const MakeResult<int> make = [](std::size_t run, const std::function<bool()>&) { return static_cast<int>(run); };
+  const auto take_two = [](int run) { return run < 2 ? true : throw std::runtime_error("the disk is full"); };
+  EXPECT_THROW(RunOnThreads<int>(1000, 3, make, take_two, kGoOn).IgnoreError(), std::runtime_error);
+  const MakeResult<int> endless = [](std::size_t, const std::function<bool()>& ended) -> absl::StatusOr<int> {
+    while (!ended()) std::this_thread::yield();
+    return absl::CancelledError("ended");
+  };
+  const auto interrupt = []() -> bool { throw std::runtime_error("interrupted"); };
+  EXPECT_THROW(RunOnThreads<int>(
+                   9, 2, endless, [](int) { return true; }, interrupt)
+                   .IgnoreError(),
+               std::runtime_error);
 }
 
 }  // namespace

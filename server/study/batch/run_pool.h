@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/cleanup/cleanup.h"
 #include "absl/functional/function_ref.h"
 #include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
@@ -98,7 +99,8 @@ class ResultQueue {
 // Calls `make` for every number below `runs` on `threads` threads, and `take` on the calling thread with each result as
 // it ends. While `take` falls behind, runs wait: no more results than two a thread are in memory. CANCELLED if `take`
 // returns false, or `cancelled`, called on the calling thread several times a second, returns true; otherwise the first
-// error of `make`, which ends the other runs.
+// error of `make`, which ends the other runs. An exception of `take` or `cancelled`, or of a thread that cannot be made
+// (std::system_error), ends the runs and reaches the caller.
 template <typename Result>
 absl::Status RunOnThreads(std::size_t runs, int threads, const MakeResult<Result>& make,
                           absl::FunctionRef<bool(Result)> take, absl::FunctionRef<bool()> cancelled) {
@@ -107,6 +109,7 @@ absl::Status RunOnThreads(std::size_t runs, int threads, const MakeResult<Result
   {
     std::vector<std::jthread> workers;
     workers.reserve(static_cast<std::size_t>(threads));
+    const absl::Cleanup end = [&queue] { queue.End(); };  // before the threads are joined, on exceptions too
     for (int i = 0; i < threads; ++i) workers.emplace_back([&queue] { queue.Work(); });
     absl::Time look = absl::Now() + kLookEvery;
     for (std::size_t done = 0; done < runs && taken && queue.status().ok();) {
@@ -118,7 +121,6 @@ absl::Status RunOnThreads(std::size_t runs, int threads, const MakeResult<Result
       taken = !cancelled();
       look = absl::Now() + kLookEvery;
     }
-    queue.End();
   }
   if (!taken) return Cancelled();
   return queue.status();
