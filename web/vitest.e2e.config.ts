@@ -11,8 +11,8 @@ export default defineConfig(({ mode }) => ({
     hookTimeout: 120_000,
     // A shared machine may stall a browser; the report lists tests that passed only in the second attempt.
     retry: process.env.CI === "true" ? 1 : 0,
-    // Three at a time, also on two cores: tests mostly wait for what takes its time, such as a breath.
-    maxWorkers: 3,
+    // Two at a time: tests mostly wait for what takes its time, such as a breath. Three draw too slowly on two cores.
+    maxWorkers: 2,
     reporters: ["verbose"],
   },
 }));
