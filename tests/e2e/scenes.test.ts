@@ -24,7 +24,7 @@ describe("a session made in the browser", () => {
       const viewer = await ViewerPage.open(browser, `${server.url}?session=thorax`);
       await viewer.page.click("#session");
       const title = await titleOf(viewer, scene);
-      await viewer.page.click(`button[aria-label="Start ${title}"]`);
+      await viewer.page.click(`button[aria-label="Start: ${title}"]`);
       await viewer.page.waitForURL((url) => url.search.startsWith(`?session=${scene}`));
       await viewer.waitForPicture();
       const before = await viewer.sample(body, 1);
