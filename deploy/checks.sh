@@ -7,9 +7,9 @@ stage_table() {
 format     20 clang-format and prettier
 scripts    40 shellcheck, and the tests of deploy/
 proto       5 buf's lint; that clients of the last release go on working
-web        40 type check, unit tests and build of the viewer
-build     430 the Release build by gcc, warnings as errors
-tests     400 what depends on that build: laws of mechanics, formats, physiology, judges, benches, trials
+web       110 type check, unit tests and build of the viewer
+build     510 the Release build by gcc, warnings as errors
+tests     470 what depends on that build: laws of mechanics, formats, physiology, judges, benches, trials
 e2e       430 the viewer in headless Chromium
 asan     1000 all other tests under ASan and UBSan, built by clang
 tsan      120 the tests of threads under ThreadSanitizer
