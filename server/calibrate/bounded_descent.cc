@@ -87,8 +87,9 @@ BoundedDescent::BoundedDescent(SquaresProblem& problem, Eigen::VectorXd x, doubl
 
 absl::Status BoundedDescent::Expand() {
   absl::StatusOr<Quadratic> there = problem_.Expand();
-  if (there.ok()) at_ = *std::move(there);
-  return there.status();
+  if (!there.ok()) return there.status();
+  at_ = *std::move(there);
+  return absl::OkStatus();
 }
 
 Eigen::VectorXd BoundedDescent::Proposed(double damping) const {

@@ -285,7 +285,7 @@ class BreathSquares : public SquaresProblem {
       : problem_(problem), simulations_(simulations), sds_(problem.Sds()), x_(problem.Bounded(problem.Means())) {}
 
   absl::StatusOr<double> Begin() {
-    const absl::StatusOr<double> sum = Try(x_.cwiseQuotient(sds_));
+    absl::StatusOr<double> sum = Try(x_.cwiseQuotient(sds_));
     if (!sum.ok()) return sum;
     Accept();
     if (std::isfinite(*sum)) return sum;
@@ -332,7 +332,7 @@ class BreathSquares : public SquaresProblem {
 absl::StatusOr<Settling> Descend(BreathSquares& squares, BoundedDescent& search, int iterations) {
   for (int i = 0; i < iterations; ++i) {
     squares.done = static_cast<double>(i) / iterations;
-    const absl::StatusOr<Settling> settling = search.Step();
+    absl::StatusOr<Settling> settling = search.Step();
     if (!settling.ok() || *settling != Settling::kGoesOn) return settling;
   }
   squares.done = 1;

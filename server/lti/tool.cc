@@ -290,8 +290,8 @@ MemberNames Tool::NamesOfCourse(const std::string& session, absl::Time now) {
   if (found == courses_.end() || found->second.memberships != course.memberships) return {};
   Course& kept = found->second;
   kept.reading = false;
-  if (names.ok()) kept.names = *std::move(names);
   kept.read = names.ok() ? now : now - kNamesKept + kNamesPause;  // so that an open table does not ask all the time
+  if (names.ok()) kept.names = *std::move(names);
   return kept.names;
 }
 
