@@ -20,7 +20,7 @@ class IssuedTokens {
  public:
   // Returns a new token of the account, which is valid until `expires`.
   std::string Issue(const Account& account, absl::Time expires) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Returns the account of the token with this SHA-256; nullopt if there is none or if it has expired.
+  // Returns the account of the token with this SHA-256; nullopt if it is unknown or has expired.
   std::optional<Account> Find(std::string_view sha256, absl::Time now) const ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:

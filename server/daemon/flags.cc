@@ -173,7 +173,7 @@ void AddLti(CLI::App& app, Flags& flags) {
            "with \"audience=TEXT\" and further \"deployment=ID\" and \"origin=URL\" where the platform needs them")
       ->delimiter(',');
   group.Add("lti-key", lti.key_file,
-            "File of this server's private keys for platforms, made if there is none; empty: lti-key.json in --store");
+            "File of this server's private keys for platforms, made if it is missing; empty: lti-key.json in --store");
   group.Add("xapi-url", lti.lrs_url, "Address of a store of learning records (xAPI), without /statements");
   group.Add("xapi-user", lti.lrs_user, "Its user name");
   group.Add("xapi-password", lti.lrs_password_file, "File with its password");

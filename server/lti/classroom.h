@@ -10,7 +10,7 @@ namespace phrenic::lti {
 
 // Who is to be admitted to which session. Plain data.
 struct Visit {
-  std::string session;  // id; the session is made if there is none
+  std::string session;  // id; the session is made if it does not exist
   std::string account;  // that owns it: the course of a platform
   std::string scene;
   bool teaches = false;           // as the owner; otherwise as a guest

@@ -34,7 +34,7 @@ std::string TextIn(const json& object, const std::string& name) {
   return text.size() > kMostClaimBytes ? "" : text;
 }
 
-// Returns a member of an object; null if there is none.
+// Returns a member of an object; null if it is missing.
 json PartIn(const json& object, const std::string& name) {
   const auto found = object.find(name);
   return found == object.end() ? json() : *found;

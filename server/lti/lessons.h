@@ -18,7 +18,7 @@ class Lessons {
   // `folder` has index.json and NAME.json.
   explicit Lessons(std::string folder) : folder_(std::move(folder)) {}
 
-  // Returns a lesson. NOT_FOUND if there is none of this name; INTERNAL if its file cannot be parsed.
+  // Returns a lesson. NOT_FOUND if no lesson has this name; INTERNAL if its file cannot be parsed.
   absl::StatusOr<v1::Lesson> Find(const std::string& name) const;
   // Returns all lessons by name, in the order in which they are taught. Leaves out those that cannot be read.
   std::vector<std::pair<std::string, v1::Lesson>> List() const;

@@ -54,7 +54,7 @@ class Outbox {
   };
 
   void Run() ABSL_LOCKS_EXCLUDED(mutex_);
-  // Returns the parcel that is due next; end() if there is none.
+  // Returns the parcel that is due next; end() if no parcel waits.
   std::map<std::string, Waiting>::iterator Next() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Removes or delays the parcel after an attempt.
   void Settle(const Waiting& tried, const absl::Status& outcome) ABSL_LOCKS_EXCLUDED(mutex_);

@@ -15,7 +15,7 @@ namespace phrenic::lti {
 struct Options {
   std::string url;                     // origin by which browsers reach this server, "https://phrenic.example.org"
   std::vector<std::string> platforms;  // each as ReadPlatform reads it
-  std::string key_file;                // private keys of this server; made if there is none
+  std::string key_file;                // private keys of this server; made if it is missing
   std::string lrs_url = "", lrs_user = "", lrs_password_file = "";  // empty: no xAPI statements
 
   bool used() const { return !platforms.empty(); }

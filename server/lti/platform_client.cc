@@ -34,7 +34,7 @@ std::string ScoresOf(const std::string& line_item) {
   return query == std::string::npos ? path + "/scores" : absl::StrCat(path, "/scores", line_item.substr(query));
 }
 
-// Returns the address of the next page; empty if there is none (RFC 8288). An address may contain commas.
+// Returns the address of the next page; empty after the last page (RFC 8288). An address may contain commas.
 std::string NextOf(const std::string& link) {
   std::size_t begin = link.find('<');
   while (begin != std::string::npos) {

@@ -15,7 +15,7 @@ namespace phrenic::lti {
 // published, so that a key can be replaced: write the new one before the old one, and remove the old one a day later.
 class ToolKey {
  public:
-  // Reads the file. Makes one with a new key of 2048 bits, mode 0600, if there is none. INVALID_ARGUMENT names the file
+  // Reads the file. Makes one with a new key of 2048 bits, mode 0600, if it is missing. INVALID_ARGUMENT names the file
   // if it has no private RSA key; PERMISSION_DENIED if it cannot be read or written.
   static absl::StatusOr<std::unique_ptr<ToolKey>> Open(const std::string& file);
   ToolKey(const ToolKey&) = delete;

@@ -27,7 +27,7 @@ class LtiClassroom final : public lti::Classroom {
   // All outlive the classroom.
   LtiClassroom(session::Table& table, access::Accounts& accounts) : table_(table), accounts_(accounts) {}
 
-  // Makes the session if there is none, and plays it if it is at rest and no one watches. FAILED_PRECONDITION if
+  // Makes the session if it does not exist, and plays it if it is at rest and no one watches. FAILED_PRECONDITION if
   // another account owns a session of this id.
   absl::StatusOr<std::string> Admit(const lti::Visit& visit) override ABSL_LOCKS_EXCLUDED(mutex_);
 

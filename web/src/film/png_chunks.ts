@@ -6,7 +6,7 @@ export interface Chunk {
 
 const signature = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
 
-/** Returns the chunks of a PNG file. Throws Error if it is none. */
+/** Returns the chunks of a PNG file. Throws Error if the bytes are not a PNG file. */
 export function readChunks(file: Uint8Array): Chunk[] {
   if (signature.some((byte, i) => file[i] !== byte)) throw new Error("the browser wrote no PNG picture");
   const view = new DataView(file.buffer, file.byteOffset, file.byteLength);

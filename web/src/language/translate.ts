@@ -37,7 +37,7 @@ export function fixed(value: number, digits: number): string {
   return decimal(value.toFixed(digits));
 }
 
-/** Returns a name as it stands within a sentence: German nouns keep their capital. */
+/** Returns a name for use within a sentence: in lower case, but German nouns keep their capital. */
 export function lower(name: string): string {
   return nounsHaveCapitals ? name : name.toLowerCase();
 }
