@@ -117,7 +117,7 @@ absl::StatusOr<Floats> BasisCodec::Decode(std::string_view bytes) const {
       for (int axis = 0; axis < 3; ++axis) sum(axis, vertex) += step * (*steps)[3 * place + axis];
     }
   }
-  const Floats positions = sum.cast<float>();
+  Floats positions = sum.cast<float>();
   if (!positions.allFinite()) return BadBasis("a number is not finite");
   return positions;
 }
