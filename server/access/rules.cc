@@ -49,6 +49,8 @@ constexpr Rule kRules[] = {
     {"FrameService.WatchFrames", kNone, kViewer, kReads},
     {"FrameService.AckFrames", kNone, kViewer, kReads, !kOpen, true},
     {"FrameService.GetForces", kNone, kViewer, kReads},
+    {"SampleService.WatchSamples", kNone, kViewer, kReads},
+    {"SampleService.ReadSamples", kNone, kViewer, kReads, !kOpen, true},
     {"TissueService.GetTissue", kNone, kViewer, kReads},
     {"TissueService.ReadTissue", kNone, kViewer, kReads},
     {"CompareService.Compare", kViewer, kNone, kReads},
