@@ -53,6 +53,7 @@ constexpr Rule kRules[] = {
     {"SampleService.ReadSamples", kNone, kViewer, kReads, !kOpen, true},
     {"TissueService.GetTissue", kNone, kViewer, kReads},
     {"TissueService.ReadTissue", kNone, kViewer, kReads},
+    {"ReferenceService.GetReferences", kNone, kViewer, kReads},
     {"CompareService.Compare", kViewer, kNone, kReads},
     {"ExportService.ListFormats", kNone, kNone, kReads},
     {"ExportService.CreateExport", kNone, kController, kChanges},

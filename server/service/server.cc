@@ -29,6 +29,7 @@
 #include "server/service/memory_trimmer.h"
 #include "server/service/net/grpc_listener.h"
 #include "server/service/periodic_task.h"
+#include "server/service/reference_service.h"
 #include "server/service/routing/forwarding_service.h"
 #include "server/service/routing/session_router.h"
 #include "server/service/sample_service.h"
@@ -130,6 +131,7 @@ struct Server::Parts {
         access_service(guard, table),
         frame_service(table, guard, metrics, options.limits),
         sample_service(table, guard, options.limits),
+        reference_service(table, guard),
         tissue_service(table, guard, options.limits),
         exports(options.limits, options.spool_dir, clock, store.get(), options.web_root + "/offline.html"),
         export_service(table, exports, guard),
@@ -187,6 +189,7 @@ struct Server::Parts {
   AccessService access_service;
   FrameService frame_service;
   SampleService sample_service;
+  ReferenceService reference_service;
   TissueService tissue_service;
   session::Exports exports;
   ExportService export_service;
@@ -250,6 +253,7 @@ void Server::Parts::AddCalls() {
   access_service.AddTo(calls);
   frame_service.AddTo(calls);
   sample_service.AddTo(calls);
+  reference_service.AddTo(calls);
   tissue_service.AddTo(calls);
   export_service.AddTo(calls);
   upload_service.AddTo(calls);

@@ -9,6 +9,7 @@ import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import { valuesOf } from "../graphs/catalogue";
+import type { References } from "../graphs/references";
 import { controlledGroup } from "../panels/session/control_dialog";
 import { Choices } from "../panels/student/choices";
 import { compareButton } from "../panels/student/compare_button";
@@ -52,6 +53,10 @@ export interface StudentParts {
   lesson: LessonPlace | undefined;
   /** Opens the page with this query string. */
   open(query: string): void;
+  /** What graphs show beside the breath; undefined before it is known. */
+  references(): References | undefined;
+  /** Resolves when the samples up to now were recorded. */
+  catchUp(): Promise<void>;
   /** Called when the layout has changed. */
   resized(): void;
 }
@@ -97,14 +102,14 @@ export class StudentView {
     const open = (query: string) => parts.open(withLessonPlace(query, this.lessons.place.value));
     this.view = new Signal(first);
     const beside = secondView && { history: this.besideHistory, label: () => this.besideLabel };
-    this.graphs = new StudentGraphsPanel(this.history, beside, () => controller.sessionId);
+    this.graphs = new StudentGraphsPanel(this.history, beside, () => controller.sessionId, parts.references);
     const close =
       secondView &&
       (() => void secondView.end().then(() => open(`?${new URLSearchParams({ session: controller.sessionId })}`)));
     const compare = compareButton({ controller, presets, open, close });
     const choices = new Choices(controller, presets).element;
     const key = () => this.graphs.volumeKey;
-    this.prediction = new PredictionPad({ controller, history: this.history, key });
+    this.prediction = new PredictionPad({ controller, history: this.history, key, catchUp: () => parts.catchUp() });
     const [act, play] = [
       controlledGroup(participation, choices, compare),
       controlledGroup(participation, this.prediction.element),
@@ -134,16 +139,20 @@ export class StudentView {
     if (view === "student") this.showComparison();
   }
 
-  /** Records a frame of the session. */
-  receive(frame: Frame): void {
-    this.history.add(frame.time, valuesOf(frame));
-    this.sentence.receive(frame);
-    this.graphs.receive(frame);
+  /** Records the numbers of a sample of the session. */
+  record(numbers: Frame): void {
+    this.history.add(numbers.time, valuesOf(numbers));
   }
 
-  /** Records a frame of the session beside. */
-  receiveBeside(frame: Frame): void {
-    this.besideHistory.add(frame.time, valuesOf(frame));
+  /** Records the numbers of a sample of the session beside. */
+  recordBeside(numbers: Frame): void {
+    this.besideHistory.add(numbers.time, valuesOf(numbers));
+  }
+
+  /** Reads from a frame of the session which graphs there are. */
+  receive(frame: Frame): void {
+    this.sentence.receive(frame);
+    this.graphs.receive(frame);
   }
 
   /** Starts another scene, which the viewer shows already. */

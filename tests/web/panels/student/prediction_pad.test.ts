@@ -14,7 +14,7 @@ test("ABreathIsDrawnByKeysThenPlayedAndMeasured", async () => {
   controller.receive(create(SessionSchema, { speed: 1, parameters: create(ParametersSchema, { breathLength: 4 }) }));
   const history = new TimeSeries(60);
   for (const time of [0, 1, 2]) history.add(time, [["v", 0.0025]]);
-  const pad = new PredictionPad({ controller, history, key: () => "v" });
+  const pad = new PredictionPad({ controller, history, key: () => "v", catchUp: () => Promise.resolve() });
   document.body.replaceChildren(pad.element);
   const press = (id: string) => pad.element.querySelector<HTMLElement>(`#${id}`)!.click();
   press("predict");
@@ -44,7 +44,7 @@ test("ABreathThatIsChosenAfterwardsSetsTheSpan", async () => {
   choose(4, 1n);
   const history = new TimeSeries(60);
   history.add(2, [["v", 0.0025]]);
-  const pad = new PredictionPad({ controller, history, key: () => "v" });
+  const pad = new PredictionPad({ controller, history, key: () => "v", catchUp: () => Promise.resolve() });
   const words = () => {
     pad.draw();
     return pad.element.querySelector("#prediction-words")!.textContent;
@@ -64,7 +64,7 @@ test("AResetEndsThePrediction", async () => {
   const controller = new SessionController(new FakeServer().api, "thorax", new FakeClock());
   const history = new TimeSeries(60);
   history.add(2, [["v", 0.0025]]);
-  const pad = new PredictionPad({ controller, history, key: () => "v" });
+  const pad = new PredictionPad({ controller, history, key: () => "v", catchUp: () => Promise.resolve() });
   pad.element.querySelector<HTMLElement>("#predict")!.click();
   await settle();
   pad.element.querySelector<HTMLElement>("#predict-play")!.click();

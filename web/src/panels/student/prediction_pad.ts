@@ -11,6 +11,8 @@ export interface PredictionSource {
   history: TimeSeries;
   /** Key of the lung volume in the history; undefined for a scene without one. */
   key(): string | undefined;
+  /** Resolves when the samples up to now are in the history. */
+  catchUp(): Promise<void>;
 }
 
 /** Size of the drawing in its own units. */
@@ -79,8 +81,9 @@ export class PredictionPad {
   }
 
   private async start(): Promise<void> {
-    const { controller, history, key } = this.source;
+    const { controller, history, key, catchUp } = this.source;
     await controller.pause();
+    await catchUp();
     const values = history.series.get(key() ?? "") ?? [];
     const [time, value] = [history.times.at(-1), values.at(-1)];
     if (time === undefined || value === undefined) return;

@@ -2,6 +2,7 @@ import { make } from "../../dom/elements";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
 import type { GraphSpec } from "../../graphs/catalogue";
 import { besideGraph, joinSeries, studentGraphs } from "../../graphs/student_graphs";
+import type { References } from "../../graphs/references";
 import { TimeSeries } from "../../state/time_series";
 import { GraphTile } from "../readings/graph_tile";
 import { t } from "../../language/translate";
@@ -33,6 +34,7 @@ export class StudentGraphsPanel {
     private readonly history: TimeSeries,
     private readonly beside: SeriesBeside | undefined,
     private readonly fileName: () => string,
+    private readonly references: () => References | undefined = () => undefined,
   ) {
     this.element.append(make("h2", { className: "unseen" }, t("Graphs")), this.tiles, this.kinds);
   }
@@ -71,7 +73,9 @@ export class StudentGraphsPanel {
     this.label = this.beside?.label() ?? "";
     const specs = [volume, others[this.chosen]].filter((each) => each !== undefined);
     const events = { zoom: () => undefined, resume: () => undefined, cursor: () => undefined };
-    this.shown = specs.map((spec) => new GraphTile(this.withBeside(spec), this.drawn, this.fileName, events));
+    this.shown = specs.map(
+      (spec) => new GraphTile(this.withBeside(spec), this.drawn, this.fileName, events, this.references),
+    );
     this.tiles.replaceChildren(...this.shown.map(({ element }) => element));
     this.kinds.hidden = others.length < 2;
     this.kinds.replaceChildren(...others.map(({ title }, i) => this.kindButton(title, i)));
