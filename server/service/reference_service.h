@@ -18,7 +18,7 @@ class ReferenceService final {
   // Adds the method to the table. The service outlives it.
   void AddTo(CallTable& calls) { calls.Add(Lane::kQuick, *this, &ReferenceService::GetReferences); }
 
-  // On Lane::kQuick: computes for less than a millisecond, and waits for no step.
+  // On Lane::kQuick: computes for a few milliseconds, and waits for no step.
   grpc::Status GetReferences(grpc::CallbackServerContext* context, const v1::GetReferencesRequest* request,
                              v1::GetReferencesResponse* response);
 

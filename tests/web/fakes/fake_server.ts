@@ -26,6 +26,7 @@ import {
   SessionService,
   SessionState,
 } from "../../../web/src/gen/phrenic/v1/session_pb";
+import { ReferenceService } from "../../../web/src/gen/phrenic/v1/references_pb";
 import {
   type ReadSamplesRequest,
   type SampleBatchSchema,

@@ -107,7 +107,7 @@ describe("a steady axis", () => {
   test("StaysWhileTheValuesFitAndEndsAtRoundNumbers", () => {
     const axis = new SteadyRange();
     const first = axis.of([[2.43, 2.93]], 0.01);
-    expect(first).toEqual([2.4, 3]);
+    expect(first.map((each) => Number(each.toFixed(6)))).toEqual([2.4, 3]);
     expect(axis.of([[2.5, 2.9]], 0.01)).toEqual(first);
     expect(axis.of([[2.43, 2.981]], 0.01)).toEqual(first);
     const larger = axis.of([[2.43, 3.4]], 0.01);

@@ -73,6 +73,8 @@ export class StudentView {
   private readonly prediction: PredictionPad;
   /** What the lessons of this session may name, once the scene is shown. */
   private readonly names: Promise<SceneNames>;
+  private gotFrame: (frame: Frame) => void = () => undefined;
+  private readonly firstFrame = new Promise<Frame>((resolve) => (this.gotFrame = resolve));
   /** The view of the lesson's step, once there is a scene to show. */
   private lessonView: LessonView | undefined;
 
@@ -81,7 +83,7 @@ export class StudentView {
     first: PageView,
   ) {
     const { controller, participation, presets, secondView } = parts;
-    this.names = whenShown(controller.session, parts.layerStyles);
+    this.names = whenShown(controller.session, parts.layerStyles, this.firstFrame);
     const { answers, identity } = parts;
     const teaches = new Signal(false);
     participation.roles.subscribe(({ mayChange, isOwner }) => teaches.set(mayChange || isOwner));
@@ -95,7 +97,8 @@ export class StudentView {
       own: new OwnLessons(identity.storage),
       keep: () => this.keepStep(),
       picture: () => parts.tools.pictureForPaper(),
-      predicts: () => this.graphs.volumeKey !== undefined,
+      predicts: () => this.graphs.subjects.length > 0,
+      predict: (measure, done) => this.prediction.predict(measure, done),
       print: () => window.print(),
       named: identity.isGraded,
     });
@@ -108,8 +111,13 @@ export class StudentView {
       (() => void secondView.end().then(() => open(`?${new URLSearchParams({ session: controller.sessionId })}`)));
     const compare = compareButton({ controller, presets, open, close });
     const choices = new Choices(controller, presets).element;
-    const key = () => this.graphs.volumeKey;
-    this.prediction = new PredictionPad({ controller, history: this.history, key, catchUp: () => parts.catchUp() });
+    const subjects = () => this.graphs.subjects;
+    this.prediction = new PredictionPad({
+      controller,
+      history: this.history,
+      subjects,
+      catchUp: () => parts.catchUp(),
+    });
     const [act, play] = [
       controlledGroup(participation, choices, compare),
       controlledGroup(participation, this.prediction.element),
@@ -153,6 +161,7 @@ export class StudentView {
   receive(frame: Frame): void {
     this.sentence.receive(frame);
     this.graphs.receive(frame);
+    this.gotFrame(frame);
   }
 
   /** Starts another scene, which the viewer shows already. */

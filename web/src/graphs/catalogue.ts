@@ -35,7 +35,8 @@ export function valuesOf(frame: Frame): [key: string, value: number][] {
   ];
 }
 
-const measureKey = (name: string) => `measure ${name}`;
+/** Returns the key of a measure in a time series. */
+export const measureKey = (name: string) => `measure ${name}`;
 const probeKey = (name: string) => `probe ${name}`;
 
 /** Returns the graphs of the measures and probes of a frame, the most informative first. */

@@ -29,8 +29,8 @@ export function graphData(spec: GraphSpec, history: TimeSeries, { start, end }: 
   };
 }
 
-/** An axis with larger margins than this part of its range is fitted again. */
-const smallestPart = 0.45;
+/** An axis is fitted again when its values take less than this part of it. */
+const smallestPart = 0.35;
 
 /** The range of an axis, between round numbers. It stays until the values leave it or become much smaller. */
 export class SteadyRange {
@@ -48,9 +48,9 @@ export class SteadyRange {
   }
 }
 
-/** Returns the range extended to multiples of a round step, about a fifth of it. */
+/** Returns the range extended to multiples of a round step, about a tenth of it. */
 function roundRange(low: number, high: number): [low: number, high: number] {
-  const rough = (high - low) / 5;
+  const rough = (high - low) / 10;
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = power * ([1, 2, 5].find((each) => each * power >= rough) ?? 10);
   return [step * Math.floor(low / step), step * Math.ceil(high / step)];

@@ -1,7 +1,13 @@
 import { make } from "../../dom/elements";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
 import type { GraphSpec } from "../../graphs/catalogue";
-import { besideGraph, joinSeries, studentGraphs } from "../../graphs/student_graphs";
+import {
+  besideGraph,
+  joinSeries,
+  type PredictionSubject,
+  predictionSubjects,
+  studentGraphs,
+} from "../../graphs/student_graphs";
 import type { References } from "../../graphs/references";
 import { TimeSeries } from "../../state/time_series";
 import { GraphTile } from "../readings/graph_tile";
@@ -23,6 +29,8 @@ export class StudentGraphsPanel {
   private readonly kinds = make("div", { className: "causes kinds", role: "group", ariaLabel: t("Second graph") });
   private readonly joined = new TimeSeries(2 * span);
   private specs: ReturnType<typeof studentGraphs> = { volume: undefined, others: [] };
+  /** What can be predicted in the scene. */
+  subjects: PredictionSubject[] = [];
   private shown: GraphTile[] = [];
   private chosen = 0;
   /** The name of the second session in the graphs. */
@@ -45,6 +53,7 @@ export class StudentGraphsPanel {
     const key = JSON.stringify(specs);
     if (key === this.key) return;
     [this.key, this.specs, this.chosen] = [key, specs, 0];
+    this.subjects = predictionSubjects(frame);
     this.build();
   }
 
@@ -57,11 +66,6 @@ export class StudentGraphsPanel {
     }
     const end = Math.max(this.drawn.times.at(-1) ?? 0, span);
     for (const tile of this.shown) tile.show({ start: end - span, end }, undefined);
-  }
-
-  /** Key of the lung volume in the history; undefined for a scene without one. */
-  get volumeKey(): string | undefined {
-    return this.specs.volume?.curves[0].key;
   }
 
   private get drawn(): TimeSeries {
