@@ -59,12 +59,11 @@ export function predictionSubjects(frame: Frame): PredictionSubject[] {
       return { key, measure: name, title: "Air in the lungs", unit: "l", factor, ...room(0.5, 1, 0.05, 2) };
     }),
     ...domeHeights(frame).map(({ key, name }) => {
-      const title = name.charAt(0).toUpperCase() + name.slice(1);
-      return { key, measure: name, title, unit: "mm", factor: 1000, ...room(25, 10, 1, 1) };
+      return { key, measure: name, title: name, unit: "mm", factor: 1000, ...room(25, 10, 1, 1) };
     }),
     ...pressures.map(({ name }) => {
-      const title = "Pressure around the lungs";
-      return { key: measureKey(name), measure: name, title, unit: "cmH₂O", factor: 1 / cmH2O, ...room(8, 3, 0.5, 1) };
+      const numbers = { factor: 1 / cmH2O, ...room(8, 3, 0.5, 1) };
+      return { key: measureKey(name), measure: name, title: "Pressure around the lungs", unit: "cmH₂O", ...numbers };
     }),
   ];
 }

@@ -104,9 +104,9 @@ export class PredictionPad {
     const [time, value] = [history.times.at(-1), values.at(-1)];
     if (time === undefined || value === undefined) return;
     const shown = values.slice(history.indexAt(time - recent));
-    const { factor, below, above, title } = subject;
+    const { factor, below, above } = subject;
     this.range = [Math.min(...shown) - below / factor, Math.max(...shown) + above / factor];
-    const label = t("{0}, as you expect it; left and right choose a time, up and down the value", t(title));
+    const label = t("{0}, as you expect it; left and right choose a time, up and down the value", titleOf(subject));
     this.svg.setAttribute("aria-label", label);
     this.prediction = new Prediction(time, this.breathLength, value);
     this.cursor = 0;
@@ -149,13 +149,14 @@ export class PredictionPad {
     if (key === this.kinds.dataset.shown) return;
     this.kinds.dataset.shown = key;
     this.kinds.hidden = subjects.length < 2;
-    const buttons = subjects.map(({ measure, title }) => {
+    const buttons = subjects.map((subject) => {
+      const { measure } = subject;
       const onclick = () => {
         this.measure = measure;
         this.show("idle");
         this.kinds.querySelector<HTMLElement>("[aria-pressed=true]")?.focus();
       };
-      return make("button", { type: "button", ariaPressed: String(measure === chosen), onclick }, t(title));
+      return make("button", { type: "button", ariaPressed: String(measure === chosen), onclick }, titleOf(subject));
     });
     this.kinds.replaceChildren(...buttons);
   }
@@ -169,7 +170,7 @@ export class PredictionPad {
     this.begin.textContent = phase === "idle" ? t("Predict the next breath") : t("Predict again");
     const words = {
       idle: "",
-      drawing: t(hint, t(this.subject?.title ?? "")),
+      drawing: t(hint, titleOf(this.subject)),
       playing: t("The breath is played …"),
       done: "",
     };
@@ -246,4 +247,9 @@ function polyline(className: string): SVGPolylineElement {
   const line = document.createElementNS("http://www.w3.org/2000/svg", "polyline");
   line.setAttribute("class", className);
   return line;
+}
+
+function titleOf(subject: PredictionSubject | undefined): string {
+  const title = t(subject?.title ?? "");
+  return title.charAt(0).toUpperCase() + title.slice(1);
 }
