@@ -74,6 +74,9 @@ import { testHook } from "./test_hook";
 /** Update intervals of texts and numbers, and of graphs [ms]. */
 const statusInterval = 200;
 const graphInterval = 100;
+/** When the graphs begin: after the first drawing, which they would delay; in a tab that is not drawn, after the start [ms]. */
+const numbersAfterDrawing = 500;
+const latestNumbers = 15_000;
 
 /** The encoder is loaded with the first film. */
 const openWriter: OpenWriter = async (...of) => (await import("../film/film_writer")).FilmWriter.open(...of);
@@ -126,6 +129,9 @@ export class App {
   private readonly comparisonCard: ComparisonCard;
   private readonly bodies = new Signal<Body[]>([]);
   private newestNumbers: Frame | undefined;
+  private followsNumbers = false;
+  /** True after the first drawing. */
+  private drawn = false;
   /** Last known top of the dock [CSS pixels]. */
   private dockTop = 0;
   /** Names of the bodies that show tissue. */
@@ -158,7 +164,9 @@ export class App {
       new LungTools(api, sessionId),
     );
     this.cameraSharing = new CameraSharing(api, sessionId, this.participation, this.viewer.rig, clock);
-    this.references = new SessionReferences(api, this.controller, this.presets);
+    this.references = new SessionReferences(api, this.controller, this.presets, () => {
+      this.graphs.refresh(this.frames.frame);
+    });
     this.graphs = new GraphsPanel(() => sessionId, this.tools.ownSeries, this.references.now);
     this.secondView = this.openSecondView();
     this.student = this.openStudentView();
@@ -194,8 +202,8 @@ export class App {
     window.addEventListener("pagehide", () => this.controller.flush());
     this.tools.coloring.field.subscribe((kind) => this.connection.setExact(needsExactPositions(kind)));
     this.controller.session.subscribe(() => this.samples.wake());
+    setTimeout(() => this.followNumbers(), latestNumbers);
     void this.connection.run();
-    void this.samples.run();
     void this.participation.run();
   }
 
@@ -215,6 +223,8 @@ export class App {
         if (live && !this.timeline.replaying) this.graphs.mMode.receive(time, arrays);
       },
       afterDraw: (orientation: Parameters<Margins["show"]>[0]) => {
+        if (!this.drawn) setTimeout(() => this.followNumbers(), numbersAfterDrawing);
+        this.drawn = true;
         this.margins.show(orientation);
         this.fluoroscopy.draw();
         this.tools.afterDraw(orientation);
@@ -436,6 +446,14 @@ export class App {
       acknowledged: (response, sent, answered) => this.frames.acknowledged(response, sent, answered),
       scene: (bodies, report) => this.showScene(bodies, report),
     };
+  }
+
+  /** Reads samples and references from now on; does nothing at a second call. */
+  private followNumbers(): void {
+    if (this.followsNumbers) return;
+    this.followsNumbers = true;
+    void this.samples.run();
+    this.references.start();
   }
 
   /** Records the numbers of a sample for the graphs. */

@@ -1,8 +1,7 @@
 import type { Api } from "../connection/api";
-import type { HealthRange, StaticCurve } from "../gen/phrenic/v1/references_pb";
 import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
-import type { References } from "../graphs/references";
+import type { ShownReferences } from "../graphs/references";
 import { breathLengthOf } from "../parameters/effort";
 import { activePreset } from "../parameters/presets";
 import type { SessionController } from "../session/session_controller";
@@ -10,19 +9,24 @@ import type { Signal } from "../state/signal";
 
 /** The ranges of health and static curves of a session, read again when its compliances change. */
 export class SessionReferences {
-  private read: { ranges: HealthRange[]; curves: StaticCurve[] } | undefined;
+  private read: Omit<ShownReferences, "breath" | "period"> | undefined;
   private key = "";
 
   constructor(
     private readonly api: Api,
     private readonly controller: SessionController,
     private readonly presets: Signal<Preset[]>,
-  ) {
-    controller.session.subscribe((session) => void this.follow(session?.parameters));
+    /** Called after the references were read. */
+    private readonly changed: () => void,
+  ) {}
+
+  /** Reads the references now, and again after changes. */
+  start(): void {
+    this.controller.session.subscribe((session) => void this.follow(session?.parameters));
   }
 
   /** What graphs show beside the breath now; undefined before it is known. */
-  readonly now = (): References | undefined => {
+  readonly now = (): ShownReferences | undefined => {
     const parameters = this.controller.session.value?.parameters;
     if (this.read === undefined || parameters === undefined) return undefined;
     const breath = activePreset(this.presets.value, parameters)?.name ?? "";
@@ -39,7 +43,9 @@ export class SessionReferences {
     const { sessionId } = this.controller;
     try {
       const { ranges, curves } = await this.api.references.getReferences({ sessionId }, { timeoutMs: 8000 });
-      this.read = { ranges, curves };
+      const { backdropOf } = await import("../graphs/references");
+      this.read = { ranges, curves, backdropOf };
+      this.changed();
     } catch {
       this.key = "";
     }

@@ -9,7 +9,7 @@ import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import { valuesOf } from "../graphs/catalogue";
-import type { References } from "../graphs/references";
+import type { ShownReferences } from "../graphs/references";
 import { controlledGroup } from "../panels/session/control_dialog";
 import { Choices } from "../panels/student/choices";
 import { compareButton } from "../panels/student/compare_button";
@@ -54,7 +54,7 @@ export interface StudentParts {
   /** Opens the page with this query string. */
   open(query: string): void;
   /** What graphs show beside the breath; undefined before it is known. */
-  references(): References | undefined;
+  references(): ShownReferences | undefined;
   /** Resolves when the samples up to now were recorded. */
   catchUp(): Promise<void>;
   /** Called when the layout has changed. */

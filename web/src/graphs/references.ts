@@ -19,6 +19,11 @@ export interface References {
   period: number;
 }
 
+/** References with what draws them, which is loaded with the first of them. */
+export interface ShownReferences extends References {
+  backdropOf(spec: GraphSpec, data: GraphData, references: References): Backdrop | undefined;
+}
+
 /** A point of a graph: its abscissa and ordinate, in the units of the graph. */
 export type Point = [x: number, y: number];
 

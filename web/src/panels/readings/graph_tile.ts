@@ -4,7 +4,7 @@ import type { Curve, GraphSpec } from "../../graphs/catalogue";
 import { curveColor } from "../../graphs/colors";
 import { toCsv, toSvg } from "../../graphs/files";
 import { Plot, type PlotEvents } from "../../graphs/plot";
-import { backdropOf, type References } from "../../graphs/references";
+import type { ShownReferences } from "../../graphs/references";
 import { graphData, type GraphData, type TimeSpan } from "../../graphs/window";
 import type { TimeSeries } from "../../state/time_series";
 import { decimal, t } from "../../language/translate";
@@ -23,7 +23,7 @@ export class GraphTile {
     private readonly history: TimeSeries,
     private readonly fileName: () => string,
     events: PlotEvents,
-    private readonly references: () => References | undefined = () => undefined,
+    private readonly references: () => ShownReferences | undefined = () => undefined,
   ) {
     this.plot = new Plot(spec, events);
     this.readings = spec.curves.map(() => make("b"));
@@ -46,7 +46,7 @@ export class GraphTile {
   show(span: TimeSpan, place: number | undefined): void {
     this.data = graphData(this.spec, this.history, span);
     const references = this.references();
-    const backdrop = references && backdropOf(this.spec, this.data, references);
+    const backdrop = references?.backdropOf(this.spec, this.data, references);
     this.plot.show(this.data, span, backdrop);
     this.note.hidden = backdrop === undefined;
     if (backdrop !== undefined && this.note.textContent !== backdrop.words) this.note.textContent = backdrop.words;

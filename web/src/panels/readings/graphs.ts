@@ -2,7 +2,7 @@ import { button, make } from "../../dom/elements";
 import { icon } from "../../dom/icons";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
 import { campbellGraph, graphsOf, type GraphSpec, valuesOf } from "../../graphs/catalogue";
-import type { References } from "../../graphs/references";
+import type { ShownReferences } from "../../graphs/references";
 import type { TimeSpan } from "../../graphs/window";
 import { TimeSeries } from "../../state/time_series";
 import { GraphTile } from "./graph_tile";
@@ -37,7 +37,7 @@ export class GraphsPanel {
   constructor(
     private readonly fileName: () => string,
     private readonly tracked: () => TrackedSeries[],
-    private readonly references: () => References | undefined,
+    private readonly references: () => ShownReferences | undefined,
   ) {
     this.length.append(...lengths.map((each) => make("option", { value: String(each) }, `${each} s`)));
     this.length.value = "12";
@@ -67,6 +67,12 @@ export class GraphsPanel {
     if (offered === this.specsKey) return;
     this.specsKey = offered;
     this.rebuild([...specs.map((spec) => ({ spec, history: this.history })), ...tracked]);
+  }
+
+  /** Draws again what is behind the curves, which has changed; `frame` is the newest one. */
+  refresh(frame: Frame | undefined): void {
+    if (frame !== undefined) this.receive(frame);
+    this.drawn = -1;
   }
 
   /** Removes all data, for another scene. */

@@ -8,7 +8,7 @@ import {
   predictionSubjects,
   studentGraphs,
 } from "../../graphs/student_graphs";
-import type { References } from "../../graphs/references";
+import type { ShownReferences } from "../../graphs/references";
 import { TimeSeries } from "../../state/time_series";
 import { GraphTile } from "../readings/graph_tile";
 import { t } from "../../language/translate";
@@ -42,7 +42,7 @@ export class StudentGraphsPanel {
     private readonly history: TimeSeries,
     private readonly beside: SeriesBeside | undefined,
     private readonly fileName: () => string,
-    private readonly references: () => References | undefined = () => undefined,
+    private readonly references: () => ShownReferences | undefined = () => undefined,
   ) {
     this.element.append(make("h2", { className: "unseen" }, t("Graphs")), this.tiles, this.kinds);
   }
