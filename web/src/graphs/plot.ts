@@ -21,7 +21,9 @@ const styled = (name: string) => () => getComputedStyle(document.documentElement
 const faint = styled("--faint");
 const grid = { stroke: styled("--line"), width: 1 };
 const font = "11px system-ui, sans-serif";
+/** Heights of a graph; of one whose areas are to be seen [CSS pixels]. */
 const plotHeight = 104;
+const areaHeight = 190;
 
 /** One graph, drawn by uPlot. */
 export class Plot {
@@ -62,9 +64,13 @@ export class Plot {
     this.now.style.left = `${this.plot.valToPos(time, "x")}px`;
   }
 
+  private get height(): number {
+    return this.spec.id === "campbell" ? areaHeight : plotHeight;
+  }
+
   private fit(): void {
     const width = this.element.clientWidth;
-    if (width > 0 && width !== this.plot.width) this.plot.setSize({ width, height: plotHeight });
+    if (width > 0 && width !== this.plot.width) this.plot.setSize({ width, height: this.height });
   }
 
   private frame(
@@ -76,7 +82,7 @@ export class Plot {
     const axis = { stroke: faint, grid, ticks: { show: false }, font, gap: 4 };
     return {
       width: 300,
-      height: plotHeight,
+      height: this.height,
       legend: { show: false },
       scales: { x: { ...x, time: false }, y },
       axes: [
