@@ -130,7 +130,7 @@ export class App {
   private readonly bodies = new Signal<Body[]>([]);
   private newestNumbers: Frame | undefined;
   private followsNumbers = false;
-  /** True after the first drawing. */
+  /** True after the first drawing of the scene. */
   private drawn = false;
   /** Last known top of the dock [CSS pixels]. */
   private dockTop = 0;
@@ -223,8 +223,10 @@ export class App {
         if (live && !this.timeline.replaying) this.graphs.mMode.receive(time, arrays);
       },
       afterDraw: (orientation: Parameters<Margins["show"]>[0]) => {
-        if (!this.drawn) setTimeout(() => this.followNumbers(), numbersAfterDrawing);
-        this.drawn = true;
+        if (!this.drawn && this.displayed !== undefined) {
+          this.drawn = true;
+          setTimeout(() => this.followNumbers(), numbersAfterDrawing);
+        }
         this.margins.show(orientation);
         this.fluoroscopy.draw();
         this.tools.afterDraw(orientation);
