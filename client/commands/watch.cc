@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <iostream>
 #include <optional>
 #include <set>
 
@@ -16,6 +17,7 @@
 #include "client/connection/tissue_probe.h"
 #include "client/print/watch_printer.h"
 #include "phrenic/v1/frames.grpc.pb.h"
+#include "phrenic/v1/samples.grpc.pb.h"
 #include "server/stream/codecs/codec.h"
 
 namespace phrenic::client {
@@ -31,6 +33,8 @@ struct WatchOptions {
   std::string codec;    // encoding of the vertices; empty: receive numbers only
   double bound_mm = 0;  // error bound of the codec [mm]; 0: the server's default
   TissueQuestion tissue;
+  double every = 0;                   // interval of samples [simulated s]; 0: watch frames
+  std::vector<std::string> measures;  // of the samples; empty: all
 };
 
 v1::WatchFramesRequest RequestOf(const WatchOptions& options) {
@@ -113,14 +117,98 @@ class Watcher {
   int frames_ = 0;
 };
 
+// Prints samples as frames, which have the same numbers.
+class SampleWatcher {
+ public:
+  SampleWatcher(const Context& context, const WatchOptions& options)
+      : context_(context),
+        options_(options),
+        stub_(v1::SampleService::NewStub(Connect(context))),
+        printer_(MakeWatchPrinter(context)) {
+    request_.set_session_id(options.id);
+    request_.set_interval(options.every);
+    request_.mutable_measures()->Assign(options.measures.begin(), options.measures.end());
+  }
+
+  grpc::Status Follow(OnReceived received) {
+    grpc::ClientContext call;
+    NameSession(request_, call);
+    if (options_.seconds > 0) call.set_deadline(end_);
+    const Interruption::Scope scope(*context_.interruption, call);
+    const auto stream = stub_->WatchSamples(&call, request_);
+    for (v1::WatchSamplesResponse response; stream->Read(&response) && !Enough();) {
+      received();
+      Print(response.batch());
+    }
+    printer_->Detach();
+    if (Enough()) call.TryCancel();
+    const grpc::Status status = stream->Finish();
+    return Enough() ? grpc::Status::OK : status;
+  }
+
+ private:
+  bool Enough() const { return options_.count > 0 && printed_ >= options_.count; }
+
+  void Print(const v1::SampleBatch& batch) {
+    if (batch.quantities_size() > 0) quantities_ = {batch.quantities().begin(), batch.quantities().end()};
+    if (batch.left_out() > 0) std::cerr << "phrenic: " << batch.left_out() << " samples were left out\n";
+    for (const v1::Sample& sample : batch.samples()) {
+      if (Enough()) return;
+      v1::WatchFramesResponse event;
+      v1::Frame& frame = *event.mutable_frame();
+      frame.set_tick(sample.tick());
+      frame.set_time(sample.time());
+      frame.set_breath(sample.breath());
+      for (std::size_t i = 0; i < quantities_.size(); ++i) {
+        v1::MeasureReading& reading = *frame.add_measures();
+        reading.set_name(quantities_[i].name());
+        reading.set_unit(quantities_[i].unit());
+        reading.set_value(sample.values(static_cast<int>(i)));
+      }
+      printer_->Print(event);
+      ++printed_;
+    }
+  }
+
+  const Context& context_;
+  const WatchOptions& options_;
+  const std::chrono::system_clock::time_point end_ =
+      std::chrono::system_clock::now() + std::chrono::milliseconds(static_cast<long>(1e3 * options_.seconds));
+  const std::unique_ptr<v1::SampleService::Stub> stub_;
+  v1::WatchSamplesRequest request_;
+  const std::unique_ptr<WatchPrinter> printer_;
+  std::vector<v1::SampledQuantity> quantities_;
+  int printed_ = 0;
+};
+
+// Returns an error for options that exclude each other.
+absl::Status CheckSampling(const WatchOptions& options) {
+  if (options.every > 0 && !(options.codec.empty() && options.tissue.empty())) {
+    return absl::InvalidArgumentError("--every: has no vertices and no lungs; leave out --codec, --lungs and --at");
+  }
+  if (options.every == 0 && !options.measures.empty()) {
+    return absl::InvalidArgumentError("--measure: chooses what --every samples; give --every as well");
+  }
+  return absl::OkStatus();
+}
+
 int Watch(const Context& context, const WatchOptions& options) {
   if (absl::Status status = CheckQuestion(options.tissue); !status.ok()) {
     Fail(status);
     return kUsage;
   }
-  Watcher watcher(context, options);
-  const grpc::Status status =
-      StreamWithReconnect(context, [&](OnReceived received) { return watcher.Follow(received); });
+  if (absl::Status status = CheckSampling(options); !status.ok()) {
+    Fail(status);
+    return kUsage;
+  }
+  grpc::Status status;
+  if (options.every > 0) {
+    SampleWatcher watcher(context, options);
+    status = StreamWithReconnect(context, [&](OnReceived received) { return watcher.Follow(received); });
+  } else {
+    Watcher watcher(context, options);
+    status = StreamWithReconnect(context, [&](OnReceived received) { return watcher.Follow(received); });
+  }
   const bool time_is_up = options.seconds > 0 && status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED;
   return status.ok() || time_is_up ? kOk : Fail(context, status);
 }
@@ -133,6 +221,13 @@ CommandFunction SetUpWatch(CLI::App& command) {
   command.add_option("--seconds", options->seconds, "stop after this time [s]")->check(NumberIn(0.0, 1e7));
   command.add_option("--count", options->count, "stop after this many lines");
   command.add_option("--fps", options->frames_per_second, "lines per second, at most")->capture_default_str();
+  command
+      .add_option("--every", options->every,
+                  "print the measures at every such interval of simulated time [s], none left out, whatever --fps says")
+      ->check(NumberIn(1e-3, 60.0));
+  command.add_option("--measure", options->measures, "with --every: print this measure only; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   command.add_flag("--lungs", options->tissue.regions,
                    "also print what each lung's base, middle, apex, back and front have gained of their volume");
   command

@@ -56,6 +56,9 @@ absl::StatusOr<bool> IsRight(const v1::Lesson& lesson, const v1::SubmitAnswerReq
     return absl::NotFoundError("the step has no question");
   }
   const v1::Question& question = lesson.steps(step).question();
+  if (question.has_prediction()) {
+    return answer.has_number() && answer.number() >= 0 && answer.number() <= question.prediction().tolerance();
+  }
   if (question.has_number()) {
     return answer.has_number() &&
            std::abs(answer.number() - question.number().value()) <= question.number().tolerance();

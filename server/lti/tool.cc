@@ -128,8 +128,7 @@ Response Tool::OnLogin(const Fields& fields, absl::Time now) {
     return ErrorPage(absl::PermissionDeniedError("The activity leads to another server (target_link_uri)."),
                      FramersOf(*platform));
   }
-  const std::string nonce = NewToken();
-  const std::string state = logins_.Issue({static_cast<std::size_t>(platform - platforms.begin()), nonce}, now);
+  const std::string state = logins_.Begin(static_cast<std::size_t>(platform - platforms.begin()), now);
   std::vector<std::pair<std::string, std::string>> question = {{"response_type", "id_token"},
                                                                {"response_mode", "form_post"},
                                                                {"scope", "openid"},
@@ -138,7 +137,7 @@ Response Tool::OnLogin(const Fields& fields, absl::Time now) {
                                                                {"redirect_uri", parts_.settings.url + "/lti/launch"},
                                                                {"login_hint", FieldOf(fields, "login_hint")},
                                                                {"state", state},
-                                                               {"nonce", nonce}};
+                                                               {"nonce", logins_.Read(state, now)->nonce}};
   if (fields.contains("lti_message_hint"))
     question.emplace_back("lti_message_hint", FieldOf(fields, "lti_message_hint"));
   const char* joint = absl::StrContains(platform->login_url, "?") ? "&" : "?";
@@ -159,10 +158,9 @@ absl::StatusOr<Tool::Choice> Tool::ReadToken(const Fields& fields, const std::st
         "cookies "
         "for this site.");
   }
-  const auto login = logins_.Use(state, now);
-  if (!login.has_value()) {
-    return absl::UnauthenticatedError(
-        "This launch was used already or has expired: open the activity again in your course.");
+  const auto login = logins_.Read(state, now);
+  if (!login.has_value() || login->platform >= keys_.size()) {
+    return absl::UnauthenticatedError("This launch has expired: open the activity again in your course.");
   }
   const auto claims = keys_[login->platform]->Verified(FieldOf(fields, "id_token"), now);
   if (absl::IsUnavailable(claims.status())) {
@@ -177,6 +175,7 @@ absl::StatusOr<Tool::Choice> Tool::ReadToken(const Fields& fields, const std::st
   }
   auto launch = ReadLaunch(*claims, parts_.settings.platforms[login->platform], login->nonce, parts_.settings.url, now);
   if (!launch.ok()) return launch.status();
+  if (absl::Status used = logins_.Use(state, now); !used.ok()) return used;
   return Choice{login->platform, *std::move(launch)};
 }
 

@@ -19,6 +19,7 @@
 #include "server/lti/http.h"
 #include "server/lti/launch.h"
 #include "server/lti/lessons.h"
+#include "server/lti/logins.h"
 #include "server/lti/outbox.h"
 #include "server/lti/platform_client.h"
 #include "server/lti/platform_keys.h"
@@ -71,10 +72,6 @@ class Tool {
   void Restore(const std::vector<store::SavedRecord>& records, std::map<std::string, absl::Status>& lost);
 
  private:
-  struct Login {
-    std::size_t platform = 0;
-    std::string nonce;
-  };
   struct Choice {
     std::size_t platform = 0;
     Launch launch;
@@ -110,7 +107,7 @@ class Tool {
   const jobs::Records learners_, scores_kept_, statements_kept_;
   std::vector<std::unique_ptr<PlatformKeys>> keys_;       // by platform
   std::vector<std::unique_ptr<PlatformClient>> clients_;  // by platform
-  Tickets<Login> logins_;
+  Logins logins_;
   Tickets<Choice> choices_;
   absl::Mutex mutex_;
   std::map<std::string, Course> courses_ ABSL_GUARDED_BY(mutex_);  // by session

@@ -29,8 +29,10 @@
 #include "server/service/memory_trimmer.h"
 #include "server/service/net/grpc_listener.h"
 #include "server/service/periodic_task.h"
+#include "server/service/reference_service.h"
 #include "server/service/routing/forwarding_service.h"
 #include "server/service/routing/session_router.h"
+#include "server/service/sample_service.h"
 #include "server/service/scene_service.h"
 #include "server/service/server_service.h"
 #include "server/service/session_service.h"
@@ -128,6 +130,8 @@ struct Server::Parts {
         control_service(table, guard),
         access_service(guard, table),
         frame_service(table, guard, metrics, options.limits),
+        sample_service(table, guard, options.limits),
+        reference_service(table, guard),
         tissue_service(table, guard, options.limits),
         exports(options.limits, options.spool_dir, clock, store.get(), options.web_root + "/offline.html"),
         export_service(table, exports, guard),
@@ -184,6 +188,8 @@ struct Server::Parts {
   ControlService control_service;
   AccessService access_service;
   FrameService frame_service;
+  SampleService sample_service;
+  ReferenceService reference_service;
   TissueService tissue_service;
   session::Exports exports;
   ExportService export_service;
@@ -246,6 +252,8 @@ void Server::Parts::AddCalls() {
   control_service.AddTo(calls);
   access_service.AddTo(calls);
   frame_service.AddTo(calls);
+  sample_service.AddTo(calls);
+  reference_service.AddTo(calls);
   tissue_service.AddTo(calls);
   export_service.AddTo(calls);
   upload_service.AddTo(calls);

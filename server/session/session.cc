@@ -54,10 +54,11 @@ Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start,
       surfaces_(std::move(origin.surfaces)),
       clock_(clock),
       publisher_(model_, clock, limits.viewers),
+      sampler_(model_, clock),
       attended_(absl::ToUnixNanos(clock.Now())),
       board_(FirstStatus(id_, *model_, origin, clock.Now())),
       saver_(std::move(origin.journal), clock, origin.epoch > 0),
-      reporter_(clock, board_, saver_, publisher_),
+      reporter_(clock, board_, saver_, publisher_, sampler_),
       loop_(StartOf(model_, std::move(start), std::move(origin)), limits.session_cpu, clock, reporter_) {}
 
 Session::~Session() { Stop(absl::UnavailableError(absl::StrCat("session ", id_, " has ended"))); }
@@ -196,7 +197,9 @@ absl::StatusOr<PresentState> Session::ReadState() {
 }
 
 void Session::Stop(const absl::Status& reason) {
-  if (loop_.Stop(reason)) publisher_.Close(reason);
+  if (!loop_.Stop(reason)) return;
+  publisher_.Close(reason);
+  sampler_.Close(reason);
 }
 
 }  // namespace phrenic::session

@@ -29,6 +29,7 @@
 #include "server/session/uploads.h"
 #include "server/store/store.h"
 #include "server/stream/publisher.h"
+#include "server/stream/sampler.h"
 
 namespace phrenic::session {
 
@@ -81,6 +82,8 @@ class Session {
   const std::vector<Uploads::Held>& surfaces() const { return surfaces_; }
   // Viewers subscribe here. It lives as long as the session.
   stream::Publisher& publisher() { return publisher_; }
+  // Readers of measures subscribe here. It lives as long as the session.
+  stream::Sampler& sampler() { return sampler_; }
   // The answers to requests that have an id.
   IdempotencyCache& answers() { return idempotency_cache_; }
   // The class's answers to the questions of lessons. Not saved.
@@ -174,6 +177,7 @@ class Session {
   const std::vector<Uploads::Held> surfaces_;
   const Clock& clock_;
   stream::Publisher publisher_;
+  stream::Sampler sampler_;
   IdempotencyCache idempotency_cache_;
   AnswerBook answer_book_;
   absl::Mutex update_mutex_;            // held by one call of Update at a time

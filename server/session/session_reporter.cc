@@ -102,7 +102,8 @@ void SessionReporter::OfferFrame(const RunningSession& session, absl::Time now) 
   publisher_.Offer(newest_);
 }
 
-void SessionReporter::NoteReset() {
+void SessionReporter::NoteReset(const RunningSession& session) {
+  sampler_.Restart(session.run.parameters(), session.run.state());
   framed_tick_ = -1;
   saver_.NoteReset();
 }

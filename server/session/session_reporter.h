@@ -1,4 +1,5 @@
-// Reports what the stepping thread does: the status to callers and viewers, frames to viewers, moments to the store.
+// Reports what the stepping thread does: the status to callers and viewers, frames to viewers, samples to readers,
+// moments to the store.
 #ifndef PHRENIC_SERVER_SESSION_SESSION_REPORTER_H_
 #define PHRENIC_SERVER_SESSION_SESSION_REPORTER_H_
 
@@ -18,6 +19,7 @@
 #include "server/session/status_board.h"
 #include "server/session/update_schedule.h"
 #include "server/stream/publisher.h"
+#include "server/stream/sampler.h"
 
 namespace phrenic::session {
 
@@ -41,8 +43,9 @@ struct RunningSession {
 class SessionReporter {
  public:
   // All outlive the reporter.
-  SessionReporter(const Clock& clock, StatusBoard& board, SessionSaver& saver, stream::Publisher& publisher)
-      : clock_(clock), board_(board), saver_(saver), publisher_(publisher) {}
+  SessionReporter(const Clock& clock, StatusBoard& board, SessionSaver& saver, stream::Publisher& publisher,
+                  stream::Sampler& sampler)
+      : clock_(clock), board_(board), saver_(saver), publisher_(publisher), sampler_(sampler) {}
 
   // Returns the status with the number of viewers, and why it is not saved.
   v1::Session status() const;
@@ -62,8 +65,10 @@ class SessionReporter {
   void OfferFrame(const RunningSession& session, absl::Time now);
   // Returns the newest frame that was offered; null before the first, which comes from the loop's constructor.
   const std::shared_ptr<const stream::Snapshot>& newest_frame() const { return newest_; }
-  // Makes the next OfferFrame offer a frame in any case, and the next save begin at t = 0.
-  void NoteReset();
+  // Takes the samples that are due after a step. Costs a comparison if none is due.
+  void NoteStep(const RunningSession& session) { sampler_.Note(session.run.parameters(), session.run.state()); }
+  // Takes a sample at t = 0, makes the next OfferFrame offer a frame in any case, and the next save begin at t = 0.
+  void NoteReset(const RunningSession& session);
   // Shows viewers a camera, until another person controls than now.
   void ShowCamera(const RunningSession& session, const v1::Camera& camera);
 
@@ -77,6 +82,7 @@ class SessionReporter {
   StatusBoard& board_;
   SessionSaver& saver_;
   stream::Publisher& publisher_;
+  stream::Sampler& sampler_;
   std::int64_t frames_ = 0;        // offered so far: the sequence number of the newest
   std::int64_t framed_tick_ = -1;  // of the newest frame
   std::shared_ptr<const stream::Snapshot> newest_;

@@ -116,6 +116,7 @@ void SteppingLoop::EndBurst(absl::Time start) {
 
 bool SteppingLoop::StepOnce() {
   if (!session_.run.Step().ok()) return false;
+  reporter_.NoteStep(session_);
   if (session_.phase == v1::SESSION_STATE_PLAYING) *reached_ = session_.run.state().time;
   if (!session_.updates.empty()) ApplyDueUpdates();
   if (job_ != nullptr) --job_->left;
@@ -159,7 +160,7 @@ void SteppingLoop::Reset() {
   EndJob(absl::AbortedError("the session was reset while it was being stepped"));
   session_.run.Reset();
   session_.updates.Clear();
-  reporter_.NoteReset();
+  reporter_.NoteReset(session_);
   session_.phase = v1::SESSION_STATE_PAUSED;
   ++session_.revision;
   Halt(v1::SESSION_STATE_PAUSED);

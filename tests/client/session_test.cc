@@ -158,6 +158,24 @@ TEST_F(Sessions, WatchPrintsLinesAndEndsAfterCount) {
   EXPECT_EQ(Ask({"watch", "seen", "--seconds", "0.3"}).code, 0);
 }
 
+TEST_F(Sessions, WatchPrintsEverySampleOfSimulatedTime) {
+  ASSERT_EQ(Ask({"create", "hanging-sheet", "--id", "seen", "--set", "time_step=0.0005", "--play"}).code, 0);
+  const Outcome csv =
+      Ask({"watch", "seen", "--every", "0.01", "--count", "6", "--measure", "energy of the springs", "-o", "csv"});
+  ASSERT_EQ(csv.code, 0) << csv.err;
+  std::istringstream lines(csv.out);
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "time [s],tick,breath,energy of the springs [J]");
+  std::vector<int> ticks;
+  while (std::getline(lines, line)) ticks.push_back(std::stoi(line.substr(line.find(',') + 1)));
+  ASSERT_EQ(ticks.size(), 6u);
+  for (std::size_t i = 1; i < ticks.size(); ++i) EXPECT_EQ(ticks[i] - ticks[i - 1], 20);
+  EXPECT_THAT(Ask({"watch", "seen", "--every", "0.01", "--measure", "x"}).err, HasSubstr("measures[0]"));
+  EXPECT_EQ(Ask({"watch", "seen", "--measure", "x"}).code, 2);
+  EXPECT_EQ(Ask({"watch", "seen", "--every", "0.01", "--lungs"}).code, 2);
+}
+
 TEST_F(Sessions, ExportDoesNotChangeTheSession) {
   ASSERT_EQ(Ask({"create", "cube-tensegrity", "--id", "kept"}).code, 0);
   const std::string file = Scratch("kept.depl");

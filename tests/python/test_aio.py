@@ -34,6 +34,17 @@ class AioTest(SessionTest, unittest.IsolatedAsyncioTestCase):
                 await session.export(path)
                 self.assertTrue(path.exists())
 
+    async def test_samples_are_those_of_the_blocking_client(self):
+        async with phrenic.aio.Session("hanging-sheet", set={"time_step": 0.0005}) as session:
+            await session.run(speed=1)
+            ticks = []
+            async for sample in session.samples(["energy of the springs"], interval=0.01):
+                ticks.append(sample.tick)
+                if len(ticks) == 5:
+                    break
+            await session.pause()
+        self.assertEqual([tick - ticks[0] for tick in ticks], [0, 20, 40, 60, 80])
+
     async def test_tissue_is_that_of_the_blocking_client(self):
         blocking = phrenic.Session("person-1")
         self.addCleanup(blocking.close)

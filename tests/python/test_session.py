@@ -97,6 +97,21 @@ class SessionsTest(SessionTest):
         self.assertEqual(frames[-1]["cube"].positions.shape, (8, 3))
         session.step(1)
 
+    def test_samples_are_equally_spaced_and_none_is_missing(self):
+        session = self.session("hanging-sheet", set={"time_step": 0.0005})
+        session.run(speed=1)
+        samples = []
+        for sample in session.samples(["energy of the springs"], interval=0.01):
+            samples.append(sample)
+            if len(samples) == 20:
+                break
+        session.pause()
+        self.assertEqual([sample.left_out for sample in samples], [0] * 20)
+        self.assertEqual({b.tick - a.tick for a, b in zip(samples, samples[1:])}, {20})
+        self.assertEqual(list(samples[0].measures), ["energy of the springs"])
+        with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "^interval:"):
+            next(session.samples(interval=0))
+
     def test_a_running_session_is_read_anew(self):
         session = self.session()
         session.run(speed=1)

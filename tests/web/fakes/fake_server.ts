@@ -26,6 +26,12 @@ import {
   SessionService,
   SessionState,
 } from "../../../web/src/gen/phrenic/v1/session_pb";
+import { ReferenceService } from "../../../web/src/gen/phrenic/v1/references_pb";
+import {
+  type ReadSamplesRequest,
+  type SampleBatchSchema,
+  SampleService,
+} from "../../../web/src/gen/phrenic/v1/samples_pb";
 import { StudyService, StudyState } from "../../../web/src/gen/phrenic/v1/study_pb";
 import {
   type GetTissueResponseSchema,
@@ -105,6 +111,9 @@ export class FakeServer {
       }
     | undefined;
   readonly tissueCalls: ("get" | "read")[] = [];
+  /** Batches of samples that the next reads return, and the positions that were read from. */
+  sampleBatches: MessageInitShape<typeof SampleBatchSchema>[] = [];
+  readonly sampleReads: ReadSamplesRequest[] = [];
   readonly comparisons: CompareRequest[] = [];
   /** Events that a comparison sends in this order; promises are awaited. */
   comparisonEvents: (ComparisonEvent | Promise<ComparisonEvent>)[] = [];
@@ -164,6 +173,14 @@ export class FakeServer {
       service(CompareService, this.comparing());
       service(StudyService, this.studying());
       service(TissueService, this.tissueReader());
+      service(ReferenceService, { getReferences: () => this.answer({ ranges: [], curves: [] }) });
+      service(SampleService, {
+        readSamples: (request) => {
+          this.sampleReads.push(request);
+          const batch = this.sampleBatches.shift() ?? { track: request.track, last: request.last };
+          return this.answer({ batch, more: this.sampleBatches.length > 0 });
+        },
+      });
     }),
   );
 

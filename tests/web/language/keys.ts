@@ -16,7 +16,7 @@ const tables: Record<string, string[]> = {
   "fluoroscopy/controls.ts": ["distances"],
   "fluoroscopy/explanation.ts": ["texts", "sources"],
   "fluoroscopy/sniff_test.ts": ["words", "both", "one"],
-  "graphs/catalogue.ts": ["domeHelp", "probeHelp", "ribCage"],
+  "graphs/catalogue.ts": ["domeHelp", "probeHelp", "ribCage", "campbellHelp"],
   "graphs/motion_words.ts": ["words", "rise", "fall"],
   "graphs/student_graphs.ts": ["help", "words"],
   "panels/jobs/export_panel.ts": ["valueNames"],

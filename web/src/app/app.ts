@@ -2,6 +2,7 @@ import { needsExactPositions } from "../appearance/fields";
 import { LayerStyles } from "../appearance/layer_styles";
 import type { Api } from "../connection/api";
 import type { Identity } from "../connection/identity";
+import { SampleFeed } from "../connection/sample_feed";
 import { type ConnectionListener, type ConnectionState, SessionConnection } from "../connection/session_connection";
 import { download } from "../dom/download";
 import { ownStorage } from "../dom/storage";
@@ -63,6 +64,7 @@ import { Fluoroscopy } from "./fluoroscopy";
 import { stageInsets } from "./insets";
 import { SceneTools } from "./scene_tools";
 import { SecondView } from "./second_view";
+import { SessionReferences } from "./session_references";
 import { shortcuts } from "./shortcuts";
 import { viewpointShortcuts } from "./viewpoint_shortcuts";
 import { skipLinks } from "./skip_links";
@@ -72,6 +74,9 @@ import { testHook } from "./test_hook";
 /** Update intervals of texts and numbers, and of graphs [ms]. */
 const statusInterval = 200;
 const graphInterval = 100;
+/** When the graphs begin: after the first drawing, which they would delay; in a tab that is not drawn, after the start [ms]. */
+const numbersAfterDrawing = 500;
+const latestNumbers = 15_000;
 
 /** The encoder is loaded with the first film. */
 const openWriter: OpenWriter = async (...of) => (await import("../film/film_writer")).FilmWriter.open(...of);
@@ -101,6 +106,8 @@ export class App {
   private readonly participation: Participation;
   private readonly cameraSharing: CameraSharing;
   private readonly connection: SessionConnection;
+  private readonly samples: SampleFeed;
+  private readonly references: SessionReferences;
   private readonly viewer: Viewer;
   private readonly tools: SceneTools;
   private readonly graphs: GraphsPanel;
@@ -121,6 +128,10 @@ export class App {
   private readonly uploads: Uploads;
   private readonly comparisonCard: ComparisonCard;
   private readonly bodies = new Signal<Body[]>([]);
+  private newestNumbers: Frame | undefined;
+  private followsNumbers = false;
+  /** True after the first drawing of the scene. */
+  private drawn = false;
   /** Last known top of the dock [CSS pixels]. */
   private dockTop = 0;
   /** Names of the bodies that show tissue. */
@@ -141,6 +152,7 @@ export class App {
     this.uploads = new Uploads(api);
     this.comparisonCard = new ComparisonCard(this.comparisons);
     this.connection = new SessionConnection(api, sessionId, this.connectionListener(), clock);
+    this.samples = new SampleFeed(api, sessionId, { sample: (numbers) => this.record(numbers) }, clock);
     this.connectionBadge = new ConnectionBadge(() => this.connection.retryNow());
     this.viewer = new Viewer(elementById("view") as HTMLCanvasElement, this.viewerHost());
     this.tools = new SceneTools(
@@ -152,7 +164,10 @@ export class App {
       new LungTools(api, sessionId),
     );
     this.cameraSharing = new CameraSharing(api, sessionId, this.participation, this.viewer.rig, clock);
-    this.graphs = new GraphsPanel(() => sessionId, this.tools.ownSeries);
+    this.references = new SessionReferences(api, this.controller, this.presets, () => {
+      this.graphs.refresh(this.frames.frame);
+    });
+    this.graphs = new GraphsPanel(() => sessionId, this.tools.ownSeries, this.references.now);
     this.secondView = this.openSecondView();
     this.student = this.openStudentView();
     this.fluoroscopy = this.openFluoroscopy();
@@ -186,6 +201,8 @@ export class App {
     setInterval(() => document.hidden || this.drawGraphs(), graphInterval);
     window.addEventListener("pagehide", () => this.controller.flush());
     this.tools.coloring.field.subscribe((kind) => this.connection.setExact(needsExactPositions(kind)));
+    this.controller.session.subscribe(() => this.samples.wake());
+    setTimeout(() => this.followNumbers(), latestNumbers);
     void this.connection.run();
     void this.participation.run();
   }
@@ -206,6 +223,10 @@ export class App {
         if (live && !this.timeline.replaying) this.graphs.mMode.receive(time, arrays);
       },
       afterDraw: (orientation: Parameters<Margins["show"]>[0]) => {
+        if (!this.drawn && this.displayed !== undefined) {
+          this.drawn = true;
+          setTimeout(() => this.followNumbers(), numbersAfterDrawing);
+        }
         this.margins.show(orientation);
         this.fluoroscopy.draw();
         this.tools.afterDraw(orientation);
@@ -223,9 +244,9 @@ export class App {
     if (secondSessionId === undefined || secondSessionId === sessionId) return undefined;
     const { viewer, frames, tools, layerStyles, controller, presets } = this;
     const mayChange = () => refusalReason(this.participation.roles.value) === "";
-    const receiveBeside = (frame: Frame) => this.student.receiveBeside(frame);
+    const recordBeside = (numbers: Frame) => this.student.recordBeside(numbers);
     const shared = { viewer, frames, tools, layerStyles, controller, presets };
-    const primary = { ...shared, host: this.viewerHost(), mayChange, receiveBeside };
+    const primary = { ...shared, host: this.viewerHost(), mayChange, recordBeside };
     return new SecondView(this.api, secondSessionId, primary, this.clock, {
       swap: () => open(`?${new URLSearchParams({ session: secondSessionId, beside: sessionId })}`),
       close: () => open(`?${new URLSearchParams({ session: sessionId })}`),
@@ -236,7 +257,15 @@ export class App {
     const { controller, participation, presets, report, tools, layerStyles, secondView, identity } = this;
     const { open, view, lesson, sessionId } = this.target;
     const answers = new ClassAnswers(this.api, sessionId, identity);
-    const shown = { tools, layerStyles, secondView, resized: () => this.resize() };
+    const catchUp = () => this.samples.catchUp();
+    const shown = {
+      tools,
+      layerStyles,
+      secondView,
+      catchUp,
+      references: this.references.now,
+      resized: () => this.resize(),
+    };
     return new StudentView(
       { controller, participation, presets, report, lesson, open, answers, identity, ...shown },
       view,
@@ -421,6 +450,21 @@ export class App {
     };
   }
 
+  /** Reads samples and references from now on; does nothing at a second call. */
+  private followNumbers(): void {
+    if (this.followsNumbers) return;
+    this.followsNumbers = true;
+    void this.samples.run();
+    this.references.start();
+  }
+
+  /** Records the numbers of a sample for the graphs. */
+  private record(numbers: Frame): void {
+    this.newestNumbers = numbers;
+    this.graphs.record(numbers);
+    this.student.record(numbers);
+  }
+
   private showScene(bodies: Body[], report: CompileReport): void {
     this.comparisons.clear();
     this.bodies.set(bodies);
@@ -434,6 +478,8 @@ export class App {
     this.layerStyles.start(bodies, report);
     this.tools.start(bodies, this.tissue, diagram);
     this.student.start();
+    // The first sample of a session that rests may have come before its scene.
+    if (this.newestNumbers !== undefined) this.record(this.newestNumbers);
     this.fluoroscopy.start(bodies);
     elementById("loading").hidden = true;
   }

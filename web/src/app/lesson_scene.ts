@@ -1,8 +1,10 @@
 import { create } from "@bufbuild/protobuf";
 import { fields, tissueFields } from "../appearance/fields";
 import type { LayerStyles } from "../appearance/layer_styles";
+import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { type LessonView, LessonViewSchema } from "../gen/phrenic/v1/lesson_pb";
 import type { Session } from "../gen/phrenic/v1/session_pb";
+import { predictionSubjects } from "../graphs/student_graphs";
 import type { SceneNames } from "../session/lessons";
 import type { Signal } from "../state/signal";
 import { cutKinds } from "../viewer/clipping";
@@ -13,13 +15,18 @@ import type { SceneTools } from "./scene_tools";
 const colourable = [...fields, ...tissueFields];
 
 /** Returns the names that the lessons of a scene with these layers may use. */
-export function sceneNames(scene: string, layers: string[]): SceneNames {
+export function sceneNames(scene: string, layers: string[], predicted: string[]): SceneNames {
   const colourings = ["own", ...colourable.map(({ kind }) => kind)];
-  return { scene, cameras: viewNames, cuts: cutKinds, colourings, layers };
+  return { scene, cameras: viewNames, cuts: cutKinds, colourings, layers, predicted };
 }
 
-/** Resolves once the session and the layers of its scene are known. */
-export function whenShown(session: Signal<Session | undefined>, { all }: LayerStyles): Promise<SceneNames> {
+/** Resolves once the session, the layers of its scene and its measures are known. */
+export async function whenShown(
+  session: Signal<Session | undefined>,
+  { all }: LayerStyles,
+  first: Promise<Frame>,
+): Promise<SceneNames> {
+  const predicted = predictionSubjects(await first).map(({ measure }) => measure);
   return new Promise((resolve) => {
     const check = () => {
       if (session.value === undefined || all.value.length === 0) return;
@@ -27,6 +34,7 @@ export function whenShown(session: Signal<Session | undefined>, { all }: LayerSt
         sceneNames(
           session.value.scene,
           all.value.map(({ layer }) => layer),
+          predicted,
         ),
       );
     };
@@ -37,7 +45,7 @@ export function whenShown(session: Signal<Session | undefined>, { all }: LayerSt
 
 /** Applies a step's view; unset fields change nothing. Requires: the names are those of `sceneNames`. */
 export function showLessonView(
-  { camera, cut, colouring, hiddenLayers, pose, cutPosition, cutFlipped }: LessonView,
+  { camera, cut, colouring, hiddenLayers, pose, cutPosition, cutFlipped, colourTop }: LessonView,
   tools: SceneTools,
   layerStyles: LayerStyles,
 ): void {
@@ -48,6 +56,7 @@ export function showLessonView(
   const kind = cutKinds.find((name) => name === cut);
   if (kind !== undefined) tools.cut.set({ kind, fraction: cutPosition ?? 0.5, flipped: cutFlipped });
   if (colouring !== "") tools.coloring.choose(colourable.find((field) => field.kind === colouring)?.kind);
+  if (colourTop !== undefined) tools.coloring.setTop(colourTop);
   for (const { layer, visible } of layerStyles.all.value) {
     const wanted = !hiddenLayers.includes(layer) && layerStyles.shownByScene(layer);
     if (visible !== wanted) layerStyles.change(layer, { visible: wanted });
@@ -64,6 +73,7 @@ export function keptLessonView(tools: SceneTools, layerStyles: LayerStyles): Les
     cut: kind,
     ...(kind === "none" ? {} : { cutPosition: fraction, cutFlipped: flipped }),
     colouring,
+    colourTop: tools.coloring.scale.value?.top,
     hiddenLayers: hidden.map(({ layer }) => layer),
   });
 }

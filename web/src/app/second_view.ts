@@ -3,6 +3,7 @@ import { GhostSelector } from "../appearance/ghosts";
 import type { LayerStyles } from "../appearance/layer_styles";
 import { VertexColorizer } from "../appearance/vertex_colorizer";
 import type { Api } from "../connection/api";
+import { SampleFeed } from "../connection/sample_feed";
 import { type ConnectionListener, SessionConnection } from "../connection/session_connection";
 import { make } from "../dom/elements";
 import { FrameBuffer, maxWait } from "../frames/frame_buffer";
@@ -38,8 +39,8 @@ export interface PrimaryView {
   host: Pick<ViewerHost, "insets" | "reducedMotion" | "simplifier">;
   /** True if this viewer may play and pause the session. */
   mayChange(): boolean;
-  /** Called with every frame of the second session. */
-  receiveBeside(frame: Frame): void;
+  /** Called with the numbers of every sample of the second session. */
+  recordBeside(numbers: Frame): void;
 }
 
 /**
@@ -86,7 +87,10 @@ export class SecondView {
     this.connection = new SessionConnection(api, sessionId, this.connectionListener(), clock);
     this.trackCameraLeader(canvas);
     this.followAppearance();
+    const samples = new SampleFeed(api, sessionId, { sample: (numbers) => primary.recordBeside(numbers) }, clock);
+    this.controller.session.subscribe(() => samples.wake());
     void this.connection.run();
+    void samples.run();
   }
 
   /** The second session. */
@@ -196,7 +200,6 @@ export class SecondView {
       frame: (frame) => {
         this.frames.receive(frame, this.clock.now());
         this.ghosts.receive(frame);
-        this.primary.receiveBeside(frame);
       },
     };
   }

@@ -9,6 +9,7 @@ import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
 import { valuesOf } from "../graphs/catalogue";
+import type { ShownReferences } from "../graphs/references";
 import { controlledGroup } from "../panels/session/control_dialog";
 import { Choices } from "../panels/student/choices";
 import { compareButton } from "../panels/student/compare_button";
@@ -52,6 +53,10 @@ export interface StudentParts {
   lesson: LessonPlace | undefined;
   /** Opens the page with this query string. */
   open(query: string): void;
+  /** What graphs show beside the breath; undefined before it is known. */
+  references(): ShownReferences | undefined;
+  /** Resolves when the samples up to now were recorded. */
+  catchUp(): Promise<void>;
   /** Called when the layout has changed. */
   resized(): void;
 }
@@ -68,6 +73,8 @@ export class StudentView {
   private readonly prediction: PredictionPad;
   /** What the lessons of this session may name, once the scene is shown. */
   private readonly names: Promise<SceneNames>;
+  private gotFrame: (frame: Frame) => void = () => undefined;
+  private readonly firstFrame = new Promise<Frame>((resolve) => (this.gotFrame = resolve));
   /** The view of the lesson's step, once there is a scene to show. */
   private lessonView: LessonView | undefined;
 
@@ -76,7 +83,7 @@ export class StudentView {
     first: PageView,
   ) {
     const { controller, participation, presets, secondView } = parts;
-    this.names = whenShown(controller.session, parts.layerStyles);
+    this.names = whenShown(controller.session, parts.layerStyles, this.firstFrame);
     const { answers, identity } = parts;
     const teaches = new Signal(false);
     participation.roles.subscribe(({ mayChange, isOwner }) => teaches.set(mayChange || isOwner));
@@ -90,21 +97,27 @@ export class StudentView {
       own: new OwnLessons(identity.storage),
       keep: () => this.keepStep(),
       picture: () => parts.tools.pictureForPaper(),
-      predicts: () => this.graphs.volumeKey !== undefined,
+      predicts: () => this.graphs.subjects.length > 0,
+      predict: (measure, done) => this.prediction.predict(measure, done),
       print: () => window.print(),
       named: identity.isGraded,
     });
     const open = (query: string) => parts.open(withLessonPlace(query, this.lessons.place.value));
     this.view = new Signal(first);
     const beside = secondView && { history: this.besideHistory, label: () => this.besideLabel };
-    this.graphs = new StudentGraphsPanel(this.history, beside, () => controller.sessionId);
+    this.graphs = new StudentGraphsPanel(this.history, beside, () => controller.sessionId, parts.references);
     const close =
       secondView &&
       (() => void secondView.end().then(() => open(`?${new URLSearchParams({ session: controller.sessionId })}`)));
     const compare = compareButton({ controller, presets, open, close });
     const choices = new Choices(controller, presets).element;
-    const key = () => this.graphs.volumeKey;
-    this.prediction = new PredictionPad({ controller, history: this.history, key });
+    const subjects = () => this.graphs.subjects;
+    this.prediction = new PredictionPad({
+      controller,
+      history: this.history,
+      subjects,
+      catchUp: () => parts.catchUp(),
+    });
     const [act, play] = [
       controlledGroup(participation, choices, compare),
       controlledGroup(participation, this.prediction.element),
@@ -134,16 +147,21 @@ export class StudentView {
     if (view === "student") this.showComparison();
   }
 
-  /** Records a frame of the session. */
-  receive(frame: Frame): void {
-    this.history.add(frame.time, valuesOf(frame));
-    this.sentence.receive(frame);
-    this.graphs.receive(frame);
+  /** Records the numbers of a sample of the session. */
+  record(numbers: Frame): void {
+    this.history.add(numbers.time, valuesOf(numbers));
   }
 
-  /** Records a frame of the session beside. */
-  receiveBeside(frame: Frame): void {
-    this.besideHistory.add(frame.time, valuesOf(frame));
+  /** Records the numbers of a sample of the session beside. */
+  recordBeside(numbers: Frame): void {
+    this.besideHistory.add(numbers.time, valuesOf(numbers));
+  }
+
+  /** Reads from a frame of the session which graphs there are. */
+  receive(frame: Frame): void {
+    this.sentence.receive(frame);
+    this.graphs.receive(frame);
+    this.gotFrame(frame);
   }
 
   /** Starts another scene, which the viewer shows already. */

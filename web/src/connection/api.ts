@@ -4,6 +4,8 @@ import { CompareService } from "../gen/phrenic/v1/compare_pb";
 import { ControlService } from "../gen/phrenic/v1/control_pb";
 import { ExportService } from "../gen/phrenic/v1/export_pb";
 import { FrameService } from "../gen/phrenic/v1/frames_pb";
+import { ReferenceService } from "../gen/phrenic/v1/references_pb";
+import { SampleService } from "../gen/phrenic/v1/samples_pb";
 import { SceneService, SessionService } from "../gen/phrenic/v1/session_pb";
 import { StudyService } from "../gen/phrenic/v1/study_pb";
 import { TissueService } from "../gen/phrenic/v1/tissue_pb";
@@ -19,6 +21,8 @@ export interface Api {
   comparisons: Client<typeof CompareService>;
   exports: Client<typeof ExportService>;
   uploads: Client<typeof UploadService>;
+  references: Client<typeof ReferenceService>;
+  samples: Client<typeof SampleService>;
   studies: Client<typeof StudyService>;
   tissue: Client<typeof TissueService>;
 }
@@ -34,6 +38,8 @@ export function createApi(transport: Transport): Api {
     comparisons: createClient(CompareService, transport),
     exports: createClient(ExportService, transport),
     uploads: createClient(UploadService, transport),
+    references: createClient(ReferenceService, transport),
+    samples: createClient(SampleService, transport),
     studies: createClient(StudyService, transport),
     tissue: createClient(TissueService, transport),
   };

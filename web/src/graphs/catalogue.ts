@@ -1,5 +1,5 @@
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
-import { displayUnit } from "./units";
+import { cmH2O, displayUnit } from "./units";
 import { t } from "../language/translate";
 
 /** A curve of a graph: the key of its values, and the factor from SI to the unit of the graph. */
@@ -35,7 +35,8 @@ export function valuesOf(frame: Frame): [key: string, value: number][] {
   ];
 }
 
-const measureKey = (name: string) => `measure ${name}`;
+/** Returns the key of a measure in a time series. */
+export const measureKey = (name: string) => `measure ${name}`;
 const probeKey = (name: string) => `probe ${name}`;
 
 /** Returns the graphs of the measures and probes of a frame, the most informative first. */
@@ -130,6 +131,22 @@ function ribCageVolume({ measures }: Frame): number[] {
   const [all, below] = [valueOf("lung volume"), valueOf(abdomen)];
   return all === undefined || below === undefined ? [] : [all - below];
 }
+
+/**
+ * The Campbell diagram: lung volume over pleural pressure, for the static curves of lungs and chest wall behind it;
+ * nothing for other scenes.
+ */
+export function campbellGraph({ measures }: Frame): GraphSpec[] {
+  const volume = measures.find(({ name }) => name === "lung volume");
+  const pressure = measures.find(({ name }) => name === "pleural pressure");
+  if (volume === undefined || pressure === undefined) return [];
+  const [unit, factor] = displayUnit("m^3");
+  const abscissa = { ...curve(measureKey(pressure.name), pressure.name, 1 / cmH2O), unit: "cmH₂O" };
+  const curves = [curve(measureKey(volume.name), volume.name, factor)];
+  return [{ id: "campbell", title: "Campbell diagram", help: campbellHelp, unit, curves, abscissa }];
+}
+
+const campbellHelp = "The area between the curves is the work of a breath";
 
 /** The descent of each dome, as M-mode ultrasound shows it. */
 function domes(frame: Frame): GraphSpec[] {

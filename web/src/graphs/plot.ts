@@ -2,7 +2,8 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { GraphSpec } from "./catalogue";
 import { curveColor } from "./colors";
-import { type GraphData, type TimeSpan, valueRange } from "./window";
+import type { Backdrop, Point } from "./references";
+import { type GraphData, SteadyRange, type TimeSpan } from "./window";
 import { decimal } from "../language/translate";
 
 /** Events of a plot. */
@@ -20,7 +21,9 @@ const styled = (name: string) => () => getComputedStyle(document.documentElement
 const faint = styled("--faint");
 const grid = { stroke: styled("--line"), width: 1 };
 const font = "11px system-ui, sans-serif";
+/** Heights of a graph; of one whose areas are to be seen [CSS pixels]. */
 const plotHeight = 104;
+const areaHeight = 190;
 
 /** One graph, drawn by uPlot. */
 export class Plot {
@@ -28,6 +31,8 @@ export class Plot {
   private readonly plot: uPlot;
   private data: GraphData = { times: [], abscissa: undefined, curves: [] };
   private span: TimeSpan = { start: 0, end: 1 };
+  private backdrop: Backdrop | undefined;
+  private readonly ranges = { x: new SteadyRange(), y: new SteadyRange() };
   /** The line at the marked time. */
   private now: HTMLElement | undefined;
 
@@ -41,9 +46,9 @@ export class Plot {
     new ResizeObserver(() => this.fit()).observe(this.element);
   }
 
-  /** Draws the data within the span. */
-  show(data: GraphData, span: TimeSpan): void {
-    [this.data, this.span] = [data, span];
+  /** Draws the data within the span, and what is behind it. */
+  show(data: GraphData, span: TimeSpan, backdrop?: Backdrop): void {
+    [this.data, this.span, this.backdrop] = [data, span, backdrop];
     if (data.abscissa === undefined) this.plot.setData([data.times, ...data.curves], true);
     else this.plot.setData([[0, 1]], true);
   }
@@ -59,9 +64,13 @@ export class Plot {
     this.now.style.left = `${this.plot.valToPos(time, "x")}px`;
   }
 
+  private get height(): number {
+    return this.spec.id === "campbell" ? areaHeight : plotHeight;
+  }
+
   private fit(): void {
     const width = this.element.clientWidth;
-    if (width > 0 && width !== this.plot.width) this.plot.setSize({ width, height: plotHeight });
+    if (width > 0 && width !== this.plot.width) this.plot.setSize({ width, height: this.height });
   }
 
   private frame(
@@ -73,7 +82,7 @@ export class Plot {
     const axis = { stroke: faint, grid, ticks: { show: false }, font, gap: 4 };
     return {
       width: 300,
-      height: plotHeight,
+      height: this.height,
       legend: { show: false },
       scales: { x: { ...x, time: false }, y },
       axes: [
@@ -86,10 +95,7 @@ export class Plot {
   private overTime(): uPlot.Options {
     const { curves } = this.spec;
     return {
-      ...this.frame(
-        { range: () => [this.span.start, this.span.end] },
-        { range: () => valueRange(this.data.curves, minimumRange(this.spec.unit)) },
-      ),
+      ...this.frame({ range: () => [this.span.start, this.span.end] }, { range: () => this.valueRange() }),
       series: [
         {},
         ...curves.map(({ order, dashed }, i) => ({
@@ -101,6 +107,7 @@ export class Plot {
       ],
       cursor: { y: false, sync: { key: "phrenic" }, drag: { x: true, setScale: false }, points: { size: 6 } },
       hooks: {
+        drawAxes: [(plot) => this.drawBackdrop(plot)],
         setSelect: [(plot) => this.select(plot)],
         setCursor: [(plot) => this.events.cursor(plot.cursor.idx ?? undefined)],
       },
@@ -119,13 +126,62 @@ export class Plot {
   private loop(): uPlot.Options {
     return {
       ...this.frame(
-        { range: () => valueRange([this.data.abscissa ?? []], 1) },
-        { range: () => valueRange(this.data.curves, minimumRange(this.spec.unit)) },
+        {
+          range: () =>
+            this.ranges.x.of(
+              [this.data.abscissa ?? [], ...this.lineValues(0)],
+              minimumRange(this.spec.abscissa?.unit ?? ""),
+            ),
+        },
+        { range: () => this.valueRange() },
       ),
       series: [{}],
       cursor: { show: false },
-      hooks: { draw: [(plot) => this.drawLoop(plot)] },
+      hooks: { drawAxes: [(plot) => this.drawBackdrop(plot)], draw: [(plot) => this.drawLoop(plot)] },
     };
+  }
+
+  /** The range of the vertical axis: of the data, and of what is behind it. */
+  private valueRange(): [low: number, high: number] {
+    const bands = (this.backdrop?.bands ?? []).map(({ low, high }) => [low, high]);
+    return this.ranges.y.of([...this.data.curves, ...bands, ...this.lineValues(1)], minimumRange(this.spec.unit));
+  }
+
+  private lineValues(axis: 0 | 1): number[][] {
+    return (this.backdrop?.lines ?? []).map(({ points }) => points.map((point) => point[axis]));
+  }
+
+  private drawBackdrop({ ctx, valToPos, bbox }: uPlot): void {
+    const { backdrop } = this;
+    if (backdrop === undefined) return;
+    const trace = (points: Point[]) => {
+      ctx.beginPath();
+      for (const [x, y] of points) ctx.lineTo(valToPos(x, "x", true), valToPos(y, "y", true));
+    };
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    ctx.globalAlpha = 0.2;
+    ctx.fillStyle = curveColor(3);
+    for (const { low, high } of backdrop.bands) {
+      const [top, bottom] = [high, low].map((each) => valToPos(each, "y", true));
+      ctx.fillRect(bbox.left, top, bbox.width, bottom - top);
+    }
+    for (const { points, order } of backdrop.areas) {
+      ctx.fillStyle = curveColor(order);
+      trace(points);
+      ctx.fill();
+    }
+    ctx.globalAlpha = 0.9;
+    ctx.lineWidth = 1.4 * devicePixelRatio;
+    for (const { points, order, dashed } of backdrop.lines) {
+      ctx.strokeStyle = curveColor(order);
+      ctx.setLineDash(dashed ? [5 * devicePixelRatio, 4 * devicePixelRatio] : []);
+      trace(points);
+      ctx.stroke();
+    }
+    ctx.restore();
   }
 
   /** Draws the loop with older parts fading and a dot at the current point. */

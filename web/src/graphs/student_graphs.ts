@@ -1,7 +1,7 @@
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { type TimeSeries, valueAt } from "../state/time_series";
 import type { MotionKeys } from "./breath_motion";
-import { domeHeights, graphsOf, type GraphSpec } from "./catalogue";
+import { domeHeights, graphsOf, type GraphSpec, measureKey } from "./catalogue";
 import { cmH2O } from "./units";
 import { t } from "../language/translate";
 
@@ -31,6 +31,45 @@ function pressureGraph(all: GraphSpec[]): GraphSpec | undefined {
   if (curves.length === 0) return undefined;
   const named = curves.map(({ key, name }) => ({ key, name: words[name] ?? name, factor: 1 / cmH2O }));
   return { id: "pressures", title: "Pressure", unit: "cmH₂O", curves: named };
+}
+
+/** What a user can predict: a measure, as it is drawn. */
+export interface PredictionSubject {
+  key: string;
+  /** Name of the measure, as lessons name it. */
+  measure: string;
+  title: string;
+  unit: string;
+  /** From SI to the unit. */
+  factor: number;
+  /** Room below and above the values of the last breaths, what an arrow key changes, and decimals, in the unit. */
+  below: number;
+  above: number;
+  nudge: number;
+  digits: number;
+}
+
+/** Returns what can be predicted in a scene: the air in the lungs, each dome, and the pressure around the lungs. */
+export function predictionSubjects(frame: Frame): PredictionSubject[] {
+  const { volume } = studentGraphs(frame);
+  const air = volume?.curves.slice(0, 1) ?? [];
+  const pressures = frame.measures.filter(({ name, unit }) => name === "pleural pressure" && unit === "Pa");
+  return [
+    ...air.map(({ key, name, factor }) => {
+      return { key, measure: name, title: "Air in the lungs", unit: "l", factor, ...room(0.5, 1, 0.05, 2) };
+    }),
+    ...domeHeights(frame).map(({ key, name }) => {
+      return { key, measure: name, title: name, unit: "mm", factor: 1000, ...room(25, 10, 1, 1) };
+    }),
+    ...pressures.map(({ name }) => {
+      const numbers = { factor: 1 / cmH2O, ...room(8, 3, 0.5, 1) };
+      return { key: measureKey(name), measure: name, title: "Pressure around the lungs", unit: "cmH₂O", ...numbers };
+    }),
+  ];
+}
+
+function room(below: number, above: number, nudge: number, digits: number) {
+  return { below, above, nudge, digits };
 }
 
 /** Returns where the lung volume and the domes of a frame are in a time series; undefined without a lung volume. */

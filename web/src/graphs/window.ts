@@ -29,8 +29,35 @@ export function graphData(spec: GraphSpec, history: TimeSeries, { start, end }: 
   };
 }
 
+/** An axis is fitted again when its values take less than this part of it. */
+const smallestPart = 0.35;
+
+/** The range of an axis, between round numbers. It stays until the values leave it or become much smaller. */
+export class SteadyRange {
+  private shown: [low: number, high: number] | undefined;
+
+  /** Returns a range that has all values and is at least `least` wide. */
+  of(values: number[][], least: number): [low: number, high: number] {
+    if (values.every((each) => each.length === 0)) return this.shown ?? [-1, 1];
+    const [low, high] = valueRange(values, least, 0.03);
+    const { shown } = this;
+    if (shown !== undefined && low >= shown[0] && high <= shown[1])
+      if (high - low >= smallestPart * (shown[1] - shown[0])) return shown;
+    this.shown = roundRange(low, high);
+    return this.shown;
+  }
+}
+
+/** Returns the range extended to multiples of a round step, about a tenth of it. */
+function roundRange(low: number, high: number): [low: number, high: number] {
+  const rough = (high - low) / 10;
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = power * ([1, 2, 5].find((each) => each * power >= rough) ?? 10);
+  return [step * Math.floor(low / step), step * Math.ceil(high / step)];
+}
+
 /** Returns the range of all values with a margin, at least `least` wide. */
-export function valueRange(values: number[][], least: number): [low: number, high: number] {
+export function valueRange(values: number[][], least: number, margin = 0.08): [low: number, high: number] {
   let [low, high] = [Infinity, -Infinity];
   for (const each of values) {
     for (const value of each) {
@@ -39,6 +66,6 @@ export function valueRange(values: number[][], least: number): [low: number, hig
     }
   }
   if (low > high) return [-1, 1];
-  const room = Math.max(0.08 * (high - low), (least - (high - low)) / 2);
+  const room = Math.max(margin * (high - low), (least - (high - low)) / 2);
   return [low - room, high + room];
 }

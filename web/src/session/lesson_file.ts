@@ -1,5 +1,11 @@
 import { fromJson, type JsonValue, toJson } from "@bufbuild/protobuf";
-import { type Lesson, LessonSchema, type LessonStep, type Question } from "../gen/phrenic/v1/lesson_pb";
+import {
+  type Lesson,
+  LessonSchema,
+  type LessonStep,
+  type PredictedCurve,
+  type Question,
+} from "../gen/phrenic/v1/lesson_pb";
 
 /** Largest size of a lesson's file [bytes], and most steps. */
 const maxBytes = 1_000_000;
@@ -54,7 +60,10 @@ export function faultOf({ title, scene, steps }: Lesson): string | undefined {
 export function faultOfStep({ title, caption, view, question }: LessonStep): string | undefined {
   if (title.trim() === "") return "title: a step needs one";
   if (caption.trim() === "") return "caption: say what is seen and why";
-  const { cutPosition = 0, pose } = view ?? {};
+  const { cutPosition = 0, pose, colourTop = 1, colouring = "" } = view ?? {};
+  if (!(Number.isFinite(colourTop) && colourTop > 0)) return `view.colourTop: ${colourTop} is not above 0`;
+  if (view?.colourTop !== undefined && (colouring === "" || colouring === "own"))
+    return "view.colourTop: a scale needs view.colouring, the name of a field";
   if (!(cutPosition >= 0 && cutPosition <= 1)) return `view.cutPosition: ${cutPosition} is not between 0 and 1`;
   const places = pose === undefined ? [] : [pose.eye, pose.target];
   if (places.some((place) => ![place?.x, place?.y, place?.z].every(Number.isFinite)))
@@ -62,9 +71,14 @@ export function faultOfStep({ title, caption, view, question }: LessonStep): str
   return question && faultOfQuestion(question);
 }
 
-function faultOfQuestion({ words, answers, number, explanation }: Question): string | undefined {
+function faultOfQuestion({ words, answers, number, explanation, prediction }: Question): string | undefined {
   if (words.trim() === "") return "question.words: a question needs words";
   if (explanation.trim() === "") return "question.explanation: say why the right answer is right";
+  if (prediction !== undefined) {
+    if (answers.length > 0 || number !== undefined)
+      return "question.prediction: give either answers, a number or a prediction";
+    return faultOfPrediction(prediction);
+  }
   if (number !== undefined) {
     if (answers.length > 0) return "question.answers: give either answers or a number";
     if (!Number.isFinite(number.value)) return "question.number.value: it must be a number";
@@ -74,4 +88,10 @@ function faultOfQuestion({ words, answers, number, explanation }: Question): str
   if (answers.length > maxAnswers) return `question.answers: give at most ${maxAnswers}`;
   if (answers.some((answer) => answer.words.trim() === "")) return "question.answers: each needs words";
   return answers.some(({ right }) => right) ? undefined : "question.answers: mark at least one as right";
+}
+
+function faultOfPrediction({ measure, tolerance }: PredictedCurve): string | undefined {
+  if (measure.trim() === "") return "question.prediction.measure: name a measure of the scene";
+  const good = Number.isFinite(tolerance) && tolerance > 0;
+  return good ? undefined : "question.prediction.tolerance: it must be above 0";
 }

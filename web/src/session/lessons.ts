@@ -44,6 +44,8 @@ export interface SceneNames {
   cuts: readonly string[];
   colourings: readonly string[];
   layers: readonly string[];
+  /** Measures whose course can be predicted. */
+  predicted: readonly string[];
 }
 
 /** Throws Error if the lesson is about another scene, or, naming the field, if a view has an unknown name. */
@@ -53,6 +55,12 @@ export function checkLesson({ scene, steps }: Lesson, names: SceneNames): void {
       `it is about the scene "${scene}" and this session shows "${names.scene}": open a session of "${scene}"`,
     );
   steps.forEach(({ view }, i) => view && checkView(view, `steps[${i}].view`, names));
+  steps.forEach(({ question }, i) => {
+    const measure = question?.prediction?.measure;
+    if (measure === undefined || names.predicted.includes(measure)) return;
+    const known = names.predicted.join(", ") || "none";
+    throw new Error(`steps[${i}].question.prediction.measure: "${measure}" is not one of ${known}`);
+  });
 }
 
 function checkView({ camera, cut, colouring, hiddenLayers }: LessonView, path: string, names: SceneNames): void {

@@ -37,6 +37,7 @@ from .operations import (
     source_of,
 )
 from .runs import Run, parts, request_of
+from .samples import Sample, SampleReader
 from .server import ServerFacts, default_server
 from .table import Table
 from .tissue import Tissue, tissue
@@ -265,6 +266,14 @@ class Session(SessionOperations):
                 frame = self._noted(event)
                 if frame is not None:
                     yield frame
+
+    async def samples(self, measures: Sequence[str] = (), interval: float = 0.02) -> AsyncIterator[Sample]:
+        """As phrenic.Session.samples."""
+        reader = SampleReader()
+        async with _closing(self._begun().stream(self._samples_call(measures, interval))) as batches:
+            async for response in batches:
+                for sample in reader.read(response.batch):
+                    yield sample
 
     async def export(
         self,

@@ -18,7 +18,7 @@ from .errors import Aborted, InvalidArgument, NotFound, Unavailable
 from .frame import Frame, Geometry, frame_of, watched_frame
 from .names import enum_number, fill, look_up, row
 from .table import Table
-from .v1 import frames_pb2, parameters_pb2, scene_pb2, session_pb2, state_pb2
+from .v1 import frames_pb2, parameters_pb2, samples_pb2, scene_pb2, session_pb2, state_pb2
 
 Scene = Union[str, Path, scene_pb2.Scene]
 """A name of the server's catalogue, a file of scene text, or a scene."""
@@ -276,6 +276,10 @@ class SessionOperations:
             session_id=self.id, max_fps=max_fps, codec=codec, max_error_mm=max_error_mm, watch_id=str(uuid.uuid4())
         )
         return Call("FrameService.WatchFrames", request)
+
+    def _samples_call(self, measures: Sequence[str], interval: float) -> Call:
+        request = samples_pb2.WatchSamplesRequest(session_id=self.id, measures=measures, interval=interval)
+        return Call("SampleService.WatchSamples", request)
 
     def _noted(self, event: frames_pb2.WatchFramesResponse) -> Optional[Frame]:
         """Returns the frame of an event of the stream; takes over a status."""

@@ -8,13 +8,26 @@ import { TimeSeries } from "../../../../web/src/state/time_series";
 import { FakeClock, settle } from "../../fakes/fake_clock";
 import { FakeServer } from "../../fakes/fake_server";
 
+const numbers = { below: 0.5, above: 1, nudge: 0.05, digits: 2 };
+const air = { key: "v", measure: "lung volume", title: "Air in the lungs", unit: "l", factor: 1000, ...numbers };
+const dome = {
+  key: "d",
+  measure: "right dome",
+  title: "Right dome",
+  unit: "mm",
+  factor: 1000,
+  ...numbers,
+  nudge: 1,
+  digits: 1,
+};
+
 test("ABreathIsDrawnByKeysThenPlayedAndMeasured", async () => {
   const server = new FakeServer();
   const controller = new SessionController(server.api, "thorax", new FakeClock());
   controller.receive(create(SessionSchema, { speed: 1, parameters: create(ParametersSchema, { breathLength: 4 }) }));
   const history = new TimeSeries(60);
   for (const time of [0, 1, 2]) history.add(time, [["v", 0.0025]]);
-  const pad = new PredictionPad({ controller, history, key: () => "v" });
+  const pad = new PredictionPad({ controller, history, subjects: () => [air, dome], catchUp: () => Promise.resolve() });
   document.body.replaceChildren(pad.element);
   const press = (id: string) => pad.element.querySelector<HTMLElement>(`#${id}`)!.click();
   press("predict");
@@ -44,7 +57,7 @@ test("ABreathThatIsChosenAfterwardsSetsTheSpan", async () => {
   choose(4, 1n);
   const history = new TimeSeries(60);
   history.add(2, [["v", 0.0025]]);
-  const pad = new PredictionPad({ controller, history, key: () => "v" });
+  const pad = new PredictionPad({ controller, history, subjects: () => [air, dome], catchUp: () => Promise.resolve() });
   const words = () => {
     pad.draw();
     return pad.element.querySelector("#prediction-words")!.textContent;
@@ -64,11 +77,50 @@ test("AResetEndsThePrediction", async () => {
   const controller = new SessionController(new FakeServer().api, "thorax", new FakeClock());
   const history = new TimeSeries(60);
   history.add(2, [["v", 0.0025]]);
-  const pad = new PredictionPad({ controller, history, key: () => "v" });
+  const pad = new PredictionPad({ controller, history, subjects: () => [air, dome], catchUp: () => Promise.resolve() });
   pad.element.querySelector<HTMLElement>("#predict")!.click();
   await settle();
   pad.element.querySelector<HTMLElement>("#predict-play")!.click();
   history.add(0, [["v", 0.0025]]);
   pad.draw();
   expect(pad.element.querySelector("svg")!.hasAttribute("hidden")).toBe(true);
+});
+
+test("AnotherMeasureIsChosenAndMeasuredInItsUnit", async () => {
+  const controller = new SessionController(new FakeServer().api, "thorax", new FakeClock());
+  const history = new TimeSeries(60);
+  history.add(2, [["v", 0.0025], ["d", 0.001]]); // prettier-ignore
+  const pad = new PredictionPad({ controller, history, subjects: () => [air, dome], catchUp: () => Promise.resolve() });
+  pad.draw();
+  const kinds = [...pad.element.querySelectorAll<HTMLButtonElement>(".kinds button")];
+  expect(kinds.map(({ textContent, ariaPressed }) => [textContent, ariaPressed])).toEqual([
+    ["Air in the lungs", "true"],
+    ["Right dome", "false"],
+  ]);
+  kinds[1].click();
+  pad.element.querySelector<HTMLElement>("#predict")!.click();
+  await settle();
+  expect(pad.element.querySelector("svg")!.getAttribute("aria-label")).toContain("Right dome");
+  pad.element.querySelector<HTMLElement>("#predict-play")!.click();
+  await settle();
+  history.add(60, [["v", 0.0025], ["d", -0.005]]); // prettier-ignore
+  pad.draw();
+  expect(pad.element.querySelector("#prediction-words")!.textContent).toMatch(/On average they are [\d.]+ mm apart/);
+});
+
+test("ALessonAsksForOneMeasureAndGetsTheDistanceOnce", async () => {
+  const controller = new SessionController(new FakeServer().api, "thorax", new FakeClock());
+  const history = new TimeSeries(60);
+  history.add(0, [["v", 0.0025], ["d", 0.001]]); // prettier-ignore
+  const pad = new PredictionPad({ controller, history, subjects: () => [air, dome], catchUp: () => Promise.resolve() });
+  const told: [number, string][] = [];
+  expect(pad.predict("flow", () => undefined)).toBe(false);
+  expect(pad.predict("right dome", (distance, { unit }) => told.push([distance, unit]))).toBe(true);
+  await settle();
+  pad.element.querySelector<HTMLElement>("#predict-play")!.click();
+  await settle();
+  for (const time of [1, 20]) history.add(time, [["v", 0.0025], ["d", 0.001]]); // prettier-ignore
+  pad.draw();
+  pad.draw();
+  expect(told).toEqual([[0, "mm"]]);
 });

@@ -1,3 +1,6 @@
+import { FrameSchema } from "../../../../web/src/gen/phrenic/v1/frames_pb";
+import type { PredictionSubject } from "../../../../web/src/graphs/student_graphs";
+import type { OnPredicted } from "../../../../web/src/panels/student/prediction_pad";
 import { create } from "@bufbuild/protobuf";
 import { beforeEach, expect, test, vi } from "vitest";
 import { sceneNames, whenShown } from "../../../../web/src/app/lesson_scene";
@@ -140,7 +143,7 @@ function card(files: Record<string, unknown>) {
     if (!(path in files)) throw new Error(`${path}: the server has no such file`);
     return files[path] as never;
   };
-  const names = async () => sceneNames("thorax", ["ribs", "lungs"]);
+  const names = async () => sceneNames("thorax", ["ribs", "lungs"], ["lung volume"]);
   const answers: [place: object, right: boolean][] = [];
   const stored = new Map<string, string>();
   const storage = { getItem: (key: string) => stored.get(key) ?? null, setItem: (k: string, v: string) => void stored.set(k, v) }; // prettier-ignore
@@ -155,6 +158,10 @@ function card(files: Record<string, unknown>) {
     own,
     picture: async () => null,
     predicts: () => true,
+    predict: (measure: string, done: OnPredicted) => {
+      done(measure === "lung volume" ? 0.2 : 9, { unit: "l", digits: 2 } as PredictionSubject);
+      return true;
+    },
     named: false,
     print: () => undefined,
     keep: async () => create(LessonStepSchema, { preset: "deep", view: { cut: "coronal", cutPosition: 0.4 } }),
@@ -175,6 +182,45 @@ test("ALessonIsPlayedStepByStep", async () => {
   expect(player.place.value).toEqual({ name: "one", step: 2 });
   player.element.querySelector<HTMLElement>("#lesson-next")!.click();
   expect(player.place.value).toBeUndefined();
+});
+
+test("APredictedCurveIsAnAnswerAndNoQuestionOfATest", async () => {
+  const drawn = {
+    ...lesson,
+    steps: [
+      {
+        title: "One",
+        caption: "c",
+        question: { words: "Draw it", explanation: "So.", prediction: { measure: "lung volume", tolerance: 0.3 } },
+      },
+    ],
+  };
+  const { card: player, answers } = card({ "lessons/one.json": drawn });
+  await player.start({ name: "one", step: 1 });
+  expect(player.element.querySelector("#lesson-pretest")).toBe(null);
+  player.element.querySelector<HTMLElement>("#lesson-predict")!.click();
+  expect(player.element.querySelector(".answer")!.textContent).toBe("0.20 l apart. Right. So.");
+  expect(answers).toEqual([[{ lesson: "one", step: 1, phase: 0 }, true]]);
+});
+
+test("AFaultOfAPredictionNamesItsField", async () => {
+  const alertOf = async (prediction: object, extra: object = {}) => {
+    const question = { words: "Draw it", explanation: "So.", prediction, ...extra };
+    const { card: player } = card({
+      "lessons/one.json": { ...lesson, steps: [{ title: "One", caption: "c", question }] },
+    });
+    await player.start({ name: "one", step: 1 });
+    return player.element.textContent;
+  };
+  const field = "steps[0].question.prediction";
+  expect(await alertOf({ measure: "flow", tolerance: 1 })).toContain(
+    `${field}.measure: "flow" is not one of lung volume`,
+  );
+  expect(await alertOf({ tolerance: 1 })).toContain(`${field}.measure: name a measure`);
+  expect(await alertOf({ measure: "lung volume" })).toContain(`${field}.tolerance: it must be above 0`);
+  expect(await alertOf({ measure: "lung volume", tolerance: "NaN" })).toContain(`${field}.tolerance`);
+  const answers = [{ words: "a", right: true }, { words: "b" }]; // prettier-ignore
+  expect(await alertOf({ measure: "lung volume", tolerance: 1 }, { answers })).toContain(`${field}: give either`);
 });
 
 test("AWrongAnswerCanBeTriedAgainAndARightOneIsExplained", async () => {
@@ -347,8 +393,9 @@ test("TheAnswerOfTheServerIsInTheWords", async () => {
 
 test("TheNamesOfASceneAreKnownOnceItIsShown", async () => {
   const styles = new LayerStyles();
-  const names = whenShown(controller.session, styles);
+  const first = create(FrameSchema, { measures: [{ name: "lung volume", unit: "m^3" }] });
+  const names = whenShown(controller.session, styles, Promise.resolve(first));
   controller.receive(create(SessionSchema, { scene: "thorax", revision: ++revision }));
   styles.all.set([{ layer: "ribs", title: "Ribs", color: "", opacity: 1, visible: true }]);
-  expect(await names).toMatchObject({ scene: "thorax", layers: ["ribs"] });
+  expect(await names).toMatchObject({ scene: "thorax", layers: ["ribs"], predicted: ["lung volume"] });
 });

@@ -4,6 +4,7 @@ import type { Curve, GraphSpec } from "../../graphs/catalogue";
 import { curveColor } from "../../graphs/colors";
 import { toCsv, toSvg } from "../../graphs/files";
 import { Plot, type PlotEvents } from "../../graphs/plot";
+import type { ShownReferences } from "../../graphs/references";
 import { graphData, type GraphData, type TimeSpan } from "../../graphs/window";
 import type { TimeSeries } from "../../state/time_series";
 import { decimal, t } from "../../language/translate";
@@ -14,6 +15,7 @@ export class GraphTile {
   private readonly plot: Plot;
   private readonly readings: HTMLElement[];
   private readonly swatches: HTMLElement[];
+  private readonly note = make("p", { className: "faint note", hidden: true });
   private data: GraphData = { times: [], abscissa: undefined, curves: [] };
 
   constructor(
@@ -21,6 +23,7 @@ export class GraphTile {
     private readonly history: TimeSeries,
     private readonly fileName: () => string,
     events: PlotEvents,
+    private readonly references: () => ShownReferences | undefined = () => undefined,
   ) {
     this.plot = new Plot(spec, events);
     this.readings = spec.curves.map(() => make("b"));
@@ -35,13 +38,18 @@ export class GraphTile {
     const head = make("header", {}, title, make("div", { className: "save" }, ...save));
     this.element = make("section", { className: "tile", ariaLabel: t(spec.title) }, head, this.plot.element);
     if (!alone) this.element.append(make("div", { className: "keys" }, ...keys));
+    this.element.append(this.note);
     this.element.dataset.graph = spec.id;
   }
 
   /** Shows a time span with the values at index `place`, or at its end. */
   show(span: TimeSpan, place: number | undefined): void {
     this.data = graphData(this.spec, this.history, span);
-    this.plot.show(this.data, span);
+    const references = this.references();
+    const backdrop = references?.backdropOf(this.spec, this.data, references);
+    this.plot.show(this.data, span, backdrop);
+    this.note.hidden = backdrop === undefined;
+    if (backdrop !== undefined && this.note.textContent !== backdrop.words) this.note.textContent = backdrop.words;
     // The colours follow the page's, which may have changed.
     this.spec.curves.forEach(({ order }, i) => (this.swatches[i].style.color = curveColor(order ?? i)));
     this.showValues(place);

@@ -1,7 +1,8 @@
 import { button, make } from "../../dom/elements";
 import { icon } from "../../dom/icons";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
-import { graphsOf, type GraphSpec, valuesOf } from "../../graphs/catalogue";
+import { campbellGraph, graphsOf, type GraphSpec, valuesOf } from "../../graphs/catalogue";
+import type { ShownReferences } from "../../graphs/references";
 import type { TimeSpan } from "../../graphs/window";
 import { TimeSeries } from "../../state/time_series";
 import { GraphTile } from "./graph_tile";
@@ -18,7 +19,7 @@ export interface TrackedSeries {
   history: TimeSeries;
 }
 
-/** Graphs of all values in the frames on a common time axis; they hold, zoom and resume together. */
+/** Graphs of all measures and probes on a common time axis; they hold, zoom and resume together. */
 export class GraphsPanel {
   readonly element = make("div", { className: "graphs" });
   /** The pictures beside the graph of the domes. */
@@ -36,6 +37,7 @@ export class GraphsPanel {
   constructor(
     private readonly fileName: () => string,
     private readonly tracked: () => TrackedSeries[],
+    private readonly references: () => ShownReferences | undefined,
   ) {
     this.length.append(...lengths.map((each) => make("option", { value: String(each) }, `${each} s`)));
     this.length.value = "12";
@@ -51,14 +53,26 @@ export class GraphsPanel {
     this.element.append(make("header", { className: "bar" }, title, this.words, this.length, this.pause), this.list);
   }
 
-  /** Records every frame, also those between two drawings. */
+  /** Records the numbers of a sample. */
+  record(numbers: Frame): void {
+    this.history.add(numbers.time, valuesOf(numbers));
+  }
+
+  /** Reads from a frame which graphs there are. */
   receive(frame: Frame): void {
-    this.history.add(frame.time, valuesOf(frame));
-    const [specs, tracked] = [graphsOf(frame), this.tracked()];
+    const curves = this.references()?.curves ?? [];
+    const campbell = curves.length > 0 ? campbellGraph(frame) : [];
+    const [specs, tracked] = [withCampbell(graphsOf(frame), campbell), this.tracked()];
     const offered = JSON.stringify([...specs, ...tracked.map(({ spec }) => spec)]);
     if (offered === this.specsKey) return;
     this.specsKey = offered;
     this.rebuild([...specs.map((spec) => ({ spec, history: this.history })), ...tracked]);
+  }
+
+  /** Draws again what is behind the curves, which has changed; `frame` is the newest one. */
+  refresh(frame: Frame | undefined): void {
+    if (frame !== undefined) this.receive(frame);
+    this.drawn = -1;
   }
 
   /** Removes all data, for another scene. */
@@ -82,7 +96,9 @@ export class GraphsPanel {
       resume: () => this.resume(),
       cursor: (place: number | undefined) => this.tiles.forEach((tile) => tile.showValues(place)),
     };
-    this.tiles = series.map(({ spec, history }) => new GraphTile(spec, history, this.fileName, events));
+    this.tiles = series.map(
+      ({ spec, history }) => new GraphTile(spec, history, this.fileName, events, this.references),
+    );
     this.list.replaceChildren(...this.tiles.map(({ element }) => element));
     this.list.querySelector('[data-graph="domes"]')?.after(this.mMode.element);
     this.drawn = -1;
@@ -117,4 +133,10 @@ export class GraphsPanel {
     for (const tile of this.tiles) tile.show(span, undefined);
     this.mMode.show(span);
   }
+}
+
+/** Puts the Campbell diagram beside the other loops. */
+function withCampbell(specs: GraphSpec[], campbell: GraphSpec[]): GraphSpec[] {
+  const after = specs.findLastIndex(({ abscissa }) => abscissa !== undefined) + 1;
+  return specs.toSpliced(after, 0, ...campbell);
 }

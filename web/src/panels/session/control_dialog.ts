@@ -1,4 +1,5 @@
 import { make } from "../../dom/elements";
+import { icon } from "../../dom/icons";
 import { switchRow } from "../../dom/rows";
 import type { Participant } from "../../gen/phrenic/v1/control_pb";
 import {
@@ -13,7 +14,12 @@ import { t } from "../../language/translate";
 /** A button in the header that shows who controls the session and opens the dialog. */
 export function controlBadge(participation: Participation, open: () => void): HTMLButtonElement {
   const words = make("span");
-  const badge = make("button", { type: "button", id: "control-badge", className: "pill", onclick: open }, words);
+  const badge = make(
+    "button",
+    { type: "button", id: "control-badge", className: "pill", onclick: open },
+    icon("person"),
+    words,
+  );
   participation.roles.subscribe((roles) => {
     const asking = roles.mayHandOver ? (roles.control?.participants ?? []).filter(({ asks }) => asks) : [];
     words.textContent =

@@ -116,10 +116,12 @@ export class ClassResults {
     const words = make("p", {}, t("{0} answered, {1} right, {2} at the first attempt.", answered, right, firstRight));
     const bars = question.answers.map((each, i) => bar(each.words, counts[i], answered, each.right));
     const unit = question.number?.unit ?? "";
+    const texts = numbers.map((each) => decimal(String(each))).join("; ");
+    const predicted = question.prediction !== undefined;
     const given =
       numbers.length === 0
         ? []
-        : [make("p", {}, t("Numbers [{0}]: {1}", unit, numbers.map((each) => decimal(String(each))).join("; ")))];
+        : [make("p", {}, predicted ? t("Distances: {0}", texts) : t("Numbers [{0}]: {1}", unit, texts))];
     return [words, ...bars, ...given, ...this.named(question, step)];
   }
 

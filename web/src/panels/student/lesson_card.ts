@@ -1,7 +1,7 @@
 import { make } from "../../dom/elements";
 import { alertMessage } from "../../dom/rows";
 import { AnswerPhase } from "../../gen/phrenic/v1/answers_pb";
-import type { Lesson, LessonStep } from "../../gen/phrenic/v1/lesson_pb";
+import type { Lesson, LessonStep, Question } from "../../gen/phrenic/v1/lesson_pb";
 import type { GivenAnswer, QuestionPlace } from "../../session/class_answers";
 import { checkLesson, type FetchJson, type LessonPlace, loadLesson, type SceneNames } from "../../session/lessons";
 import type { OwnLessons } from "../../session/own_lessons";
@@ -10,6 +10,8 @@ import { ClassResults, type ListAnswers } from "./class_results";
 import { LessonList } from "./lesson_list";
 import { LessonMaker } from "./lesson_maker";
 import { differenceWords, lessonTest, questionCount, type Score } from "./lesson_test";
+import { predictionForm } from "./prediction_form";
+import type { OnPredicted } from "./prediction_pad";
 import { questionForm } from "./question_form";
 import type { KeepView } from "./step_form";
 import { StepPictures } from "./step_pictures";
@@ -34,6 +36,8 @@ export interface LessonActions {
   picture(): Promise<Blob | null>;
   /** True if the scene has lungs. */
   predicts(): boolean;
+  /** Has the user predict a measure and play the breath; false if the scene does not show it. */
+  predict(measure: string, done: OnPredicted): boolean;
   /** Prints the page. */
   print(): void;
   /** True if a school's platform knows who answers. */
@@ -121,14 +125,22 @@ export class LessonCard {
     const task = step.task === "" ? [] : [make("p", { className: "task" }, make("b", {}, t("Try: ")), step.task)];
     const answered = (answer: GivenAnswer) => this.send(place.step, AnswerPhase.UNSPECIFIED, answer);
     const question =
-      step.question === undefined ? [] : [questionForm(step.question, answered), answerNote(this.actions.named)];
+      step.question === undefined ? [] : [this.questionForm(step.question, answered), answerNote(this.actions.named)];
     const caption = make("p", { className: "caption" }, step.caption);
     const parts = [title, caption, ...task, ...question, ...this.testFirst(lesson, place)];
     const buttons = [this.buttons(place), this.printButton()];
     this.element.replaceChildren(this.head(lesson, place), ...parts, this.results.element, ...buttons);
-    this.results.show(questionCount(lesson) === 0 ? undefined : { ...place, lesson });
+    const asks = lesson.steps.some((each) => each.question !== undefined);
+    this.results.show(asks ? { ...place, lesson } : undefined);
     title.focus();
     this.actions.play(lesson, step);
+  }
+
+  private questionForm(question: Question, answered: (answer: GivenAnswer) => void): HTMLElement {
+    const predict = (measure: string, done: OnPredicted) => this.actions.predict(measure, done);
+    return question.prediction === undefined
+      ? questionForm(question, answered)
+      : predictionForm(question, question.prediction, predict, answered);
   }
 
   private send(step: number, phase: AnswerPhase, answer: GivenAnswer): void {

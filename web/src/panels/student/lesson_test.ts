@@ -14,13 +14,13 @@ export interface Score {
 /** Receives the answer to the question of a step, from 1. */
 export type OnAnswer = (step: number, phase: AnswerPhase, answer: GivenAnswer) => void;
 
-/** Returns the number of questions of a lesson. */
+/** Returns the number of questions that a test can ask: all but those whose answer is a drawn curve. */
 export function questionCount({ steps }: Lesson): number {
-  return steps.filter(({ question }) => question !== undefined).length;
+  return steps.filter(({ question }) => question !== undefined && question.prediction === undefined).length;
 }
 
 /**
- * Returns a form with all questions of a lesson, without saying which answers are right. Calls `answered` for each
+ * Returns a form with all questions of a lesson that a test can ask, without saying which answers are right. Calls `answered` for each
  * question when the form is handed in, and then `done`. Questions without an answer count as wrong.
  */
 export function lessonTest(
@@ -30,7 +30,9 @@ export function lessonTest(
   done: (score: Score) => void,
 ): HTMLElement {
   const asked = lesson.steps.flatMap(({ question }, i) =>
-    question === undefined ? [] : [{ step: i + 1, ...questionFields(question, `test-${i}`) }],
+    question === undefined || question.prediction !== undefined
+      ? []
+      : [{ step: i + 1, ...questionFields(question, `test-${i}`) }],
   );
   const groups = asked.map(({ legend, rows }) => make("fieldset", { className: "question" }, legend, ...rows));
   const hand = make("button", { type: "submit", className: "primary" }, t("Hand in"));

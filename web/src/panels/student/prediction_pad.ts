@@ -1,4 +1,5 @@
 import { make } from "../../dom/elements";
+import type { PredictionSubject } from "../../graphs/student_graphs";
 import { Prediction } from "../../graphs/prediction";
 import { breathLengthOf } from "../../parameters/effort";
 import type { SessionController } from "../../session/session_controller";
@@ -9,22 +10,23 @@ import { fixed, t } from "../../language/translate";
 export interface PredictionSource {
   controller: SessionController;
   history: TimeSeries;
-  /** Key of the lung volume in the history; undefined for a scene without one. */
-  key(): string | undefined;
+  /** What can be predicted; empty for a scene without lungs. */
+  subjects(): PredictionSubject[];
+  /** Resolves when the samples up to now are in the history. */
+  catchUp(): Promise<void>;
 }
 
 /** Size of the drawing in its own units. */
 const [width, height] = [320, 150];
-/** Room below and above the volumes of the last breaths [m^3]. */
-const [below, above] = [0.0005, 0.001];
-/** What an arrow key changes [m^3]. */
-const nudge = 0.00005;
-/** The span of the volumes that fit the drawing [simulated s]. */
+/** The span of the values that fit the drawing [simulated s]. */
 const recent = 8;
 
+/** Receives the mean distance of a prediction from the breath, in the unit of its subject. */
+export type OnPredicted = (distance: number, subject: PredictionSubject) => void;
+
 /**
- * Predict, then play: records the user's predicted lung volume over the next breath, plays the breath, and shows both
- * curves and their mean distance.
+ * Predict, then play: records the course that the user predicts for a measure over the next breath, plays the breath, and
+ * shows both curves and their mean distance.
  */
 export class PredictionPad {
   readonly element = make("section", { id: "prediction", ariaLabel: t("Predict the next breath") });
@@ -38,6 +40,10 @@ export class PredictionPad {
     { type: "button", id: "predict-play", className: "primary" },
     t("Play and see"),
   );
+  private readonly kinds = make("div", { className: "causes kinds", role: "group", ariaLabel: t("What to predict") });
+  /** The measure that is predicted; the first of the subjects before one is chosen. */
+  private measure = "";
+  private asked: OnPredicted | undefined;
   private prediction: Prediction | undefined;
   private range: [low: number, high: number] = [0, 1];
   private cursor = 0;
@@ -49,43 +55,59 @@ export class PredictionPad {
     this.svg.setAttribute("preserveAspectRatio", "none");
     this.svg.setAttribute("role", "slider");
     this.svg.setAttribute("tabindex", "0");
-    this.svg.setAttribute(
-      "aria-label",
-      t("Air in the lungs that you expect; left and right choose a time, up and down the air"),
-    );
     this.svg.append(this.drawn, this.seen);
     this.svg.addEventListener("pointerdown", (event) => this.onPointer(event, true));
     this.svg.addEventListener("pointermove", (event) => event.buttons === 1 && this.onPointer(event, false));
     this.svg.addEventListener("keydown", (event) => this.onKey(event));
-    this.begin.onclick = () => void this.start();
+    this.begin.onclick = () => this.predict(this.subject?.measure ?? "");
     this.play.onclick = () => void this.see();
-    this.element.append(this.begin, this.svg, this.words, this.play);
+    this.element.append(this.kinds, this.begin, this.svg, this.words, this.play);
     this.show("idle");
   }
 
   /** Shows how far the breath has come; called several times a second. */
   draw(): void {
     const { prediction } = this;
-    const { history, key } = this.source;
-    const name = key();
-    if (this.phase !== "playing" || prediction === undefined || name === undefined) return;
+    const { history } = this.source;
+    const { subject } = this;
+    if (this.phase === "idle" || this.phase === "done") this.showKinds();
+    if (this.phase !== "playing" || prediction === undefined || subject === undefined) return;
     const now = history.times.at(-1) ?? 0;
     if (now < prediction.start) return this.show("idle"); // the session was reset
     const first = history.indexAt(prediction.start);
     const times = history.times.slice(first).filter((time) => time <= prediction.end);
-    const values = history.series.get(name)?.slice(first) ?? [];
+    const values = history.series.get(subject.key)?.slice(first) ?? [];
     this.seen.setAttribute("points", times.map((time, i) => this.pixel(prediction, time, values[i])).join(" "));
-    if (now >= prediction.end) this.tell(prediction.distance(history, name));
+    if (now >= prediction.end) this.tell(prediction.distance(history, subject.key), subject);
+  }
+
+  /** Begins a prediction of a measure; calls `done` when it was played. Returns false if the scene does not show it. */
+  predict(measure: string, done?: OnPredicted): boolean {
+    if (!this.source.subjects().some((each) => each.measure === measure)) return false;
+    [this.measure, this.asked] = [measure, done];
+    void this.start();
+    return true;
+  }
+
+  private get subject(): PredictionSubject | undefined {
+    const subjects = this.source.subjects();
+    return subjects.find(({ measure }) => measure === this.measure) ?? subjects.at(0);
   }
 
   private async start(): Promise<void> {
-    const { controller, history, key } = this.source;
+    const { controller, history, catchUp } = this.source;
+    const { subject } = this;
     await controller.pause();
-    const values = history.series.get(key() ?? "") ?? [];
+    await catchUp();
+    if (subject === undefined) return;
+    const values = history.series.get(subject.key) ?? [];
     const [time, value] = [history.times.at(-1), values.at(-1)];
     if (time === undefined || value === undefined) return;
     const shown = values.slice(history.indexAt(time - recent));
-    this.range = [Math.min(...shown) - below, Math.max(...shown) + above];
+    const { factor, below, above } = subject;
+    this.range = [Math.min(...shown) - below / factor, Math.max(...shown) + above / factor];
+    const label = t("{0}, as you expect it; left and right choose a time, up and down the value", titleOf(subject));
+    this.svg.setAttribute("aria-label", label);
     this.prediction = new Prediction(time, this.breathLength, value);
     this.cursor = 0;
     this.seen.setAttribute("points", "");
@@ -106,18 +128,52 @@ export class PredictionPad {
     return breathLengthOf(this.source.controller.session.value?.parameters);
   }
 
-  private tell(distance: number): void {
+  private tell(distance: number, subject: PredictionSubject): void {
     this.show("done");
-    const litres = fixed(1000 * distance, 2);
-    this.words.textContent = t("Dashed: your curve. Solid: the breath. On average they are {0} l apart.", litres);
+    const { unit, factor, digits } = subject;
+    const apart = fixed(factor * distance, digits);
+    this.words.textContent = t(
+      "Dashed: your curve. Solid: the breath. On average they are {0} {1} apart.",
+      apart,
+      unit,
+    );
+    const { asked } = this;
+    this.asked = undefined;
+    asked?.(Number((factor * distance).toFixed(digits)), subject);
+  }
+
+  /** Buttons of what can be predicted, if there is a choice. */
+  private showKinds(): void {
+    const [subjects, chosen] = [this.source.subjects(), this.subject?.measure];
+    const key = subjects.map(({ measure }) => `${measure} ${measure === chosen}`).join();
+    if (key === this.kinds.dataset.shown) return;
+    this.kinds.dataset.shown = key;
+    this.kinds.hidden = subjects.length < 2;
+    const buttons = subjects.map((subject) => {
+      const { measure } = subject;
+      const onclick = () => {
+        this.measure = measure;
+        this.show("idle");
+        this.kinds.querySelector<HTMLElement>("[aria-pressed=true]")?.focus();
+      };
+      return make("button", { type: "button", ariaPressed: String(measure === chosen), onclick }, titleOf(subject));
+    });
+    this.kinds.replaceChildren(...buttons);
   }
 
   private show(phase: PredictionPad["phase"]): void {
     this.phase = phase;
     this.svg.toggleAttribute("hidden", phase === "idle");
+    this.kinds.hidden = phase === "drawing" || phase === "playing" || this.source.subjects().length < 2;
+    if (phase === "idle") this.showKinds();
     this.play.hidden = phase !== "drawing";
     this.begin.textContent = phase === "idle" ? t("Predict the next breath") : t("Predict again");
-    const words = { idle: "", drawing: t(hint), playing: t("The breath is played …"), done: "" };
+    const words = {
+      idle: "",
+      drawing: t(hint, titleOf(this.subject)),
+      playing: t("The breath is played …"),
+      done: "",
+    };
     this.words.textContent = words[phase];
   }
 
@@ -148,23 +204,30 @@ export class PredictionPad {
       const next = Math.min(prediction.values.length - 1, Math.max(0, this.cursor + across));
       if (across > 0) prediction.line({ point: this.cursor, value }, { point: next, value });
       this.cursor = next;
-    } else prediction.line({ point: this.cursor, value }, { point: this.cursor, value: value + (up ?? 0) * nudge });
+    } else
+      prediction.line({ point: this.cursor, value }, { point: this.cursor, value: value + (up ?? 0) * this.nudge });
     this.drawCurve();
   }
 
+  private get nudge(): number {
+    const { subject } = this;
+    return subject === undefined ? 0 : subject.nudge / subject.factor;
+  }
+
   private drawCurve(): void {
-    const { prediction, cursor } = this;
-    if (prediction === undefined) return;
+    const { prediction, cursor, subject } = this;
+    if (prediction === undefined || subject === undefined) return;
+    const { unit, factor, digits } = subject;
     const { values } = prediction;
     const corners = values.map((value, i) => this.pixel(prediction, prediction.timeOf(i), value));
     this.drawn.setAttribute("points", corners.join(" "));
-    const [low, high] = this.range.map((each) => (1000 * each).toFixed(2));
+    const [low, high] = this.range.map((each) => (factor * each).toFixed(digits));
     const seconds = fixed(prediction.timeOf(cursor) - prediction.start, 1);
-    const text = t("after {0} s: {1} l", seconds, fixed(1000 * values[cursor], 2));
+    const text = t("after {0} s: {1} {2}", seconds, fixed(factor * values[cursor], digits), unit);
     for (const [name, value] of [
       ["valuemin", low],
       ["valuemax", high],
-      ["valuenow", (1000 * values[cursor]).toFixed(2)],
+      ["valuenow", (factor * values[cursor]).toFixed(digits)],
       ["valuetext", text],
     ])
       this.svg.setAttribute(`aria-${name}`, value);
@@ -178,10 +241,15 @@ export class PredictionPad {
 }
 
 const hint =
-  "Draw the air in the lungs over one breath: with the mouse, a finger or the arrow keys. Choose another breath first, if you like.";
+  "{0}: draw it over one breath, with the mouse, a finger or the arrow keys. Choose another breath first, if you like.";
 
 function polyline(className: string): SVGPolylineElement {
   const line = document.createElementNS("http://www.w3.org/2000/svg", "polyline");
   line.setAttribute("class", className);
   return line;
+}
+
+function titleOf(subject: PredictionSubject | undefined): string {
+  const title = t(subject?.title ?? "");
+  return title.charAt(0).toUpperCase() + title.slice(1);
 }

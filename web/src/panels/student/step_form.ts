@@ -23,7 +23,9 @@ export class StepForm {
   private readonly words = make("input", { type: "text", id: "step-question", maxLength: 500 });
   private readonly answers = textRow(
     "step-answers",
-    t("Answers: one a line, * before each right one; or one number, ± and its tolerance, and its unit"),
+    t(
+      "Answers: one a line, * before each right one; or one number, ± and its tolerance, and its unit; or a curve: predict lung volume ± 0.3",
+    ),
     t("The left half pushes it.\n* It cannot pull against the pressure."),
   );
   private readonly explanation = make("input", { type: "text", id: "step-explanation", maxLength: 1000 });
@@ -112,13 +114,19 @@ export class StepForm {
 }
 
 /** Returns the answers of a question as `answersOf` reads them. */
-export function answersText({ answers, number }: Question): string {
+export function answersText({ answers, number, prediction }: Question): string {
+  if (prediction !== undefined) return `predict ${prediction.measure} ± ${prediction.tolerance}`;
   if (number !== undefined) return `${number.value} ± ${number.tolerance} ${number.unit}`.trim();
   return answers.map(({ words, right }) => (right ? `* ${words}` : words)).join("\n");
 }
 
-/** Returns the answers of a text, one a line with "*" before right ones; or a number, as "1.5 ± 0.2 l". */
+/**
+ * Returns the answers of a text, one a line with "*" before right ones; a number, as "1.5 ± 0.2 l"; or a curve to draw, as
+ * "predict right dome ± 4".
+ */
 export function answersOf(text: string) {
+  const curve = /^predict\s+([^\n±]*[^\s±])\s*(?:±|\+-)\s*(\d+(?:\.\d+)?)$/.exec(text.trim());
+  if (curve !== null) return { prediction: { measure: curve[1], tolerance: Number(curve[2]) } };
   const number = /^([-−]?\d+(?:\.\d+)?)\s*(?:(?:±|\+-)\s*(\d+(?:\.\d+)?))?\s*([^\d\s*][^\n]*)?$/.exec(text.trim());
   if (number !== null) {
     const [, value, tolerance = "0", unit = ""] = number;

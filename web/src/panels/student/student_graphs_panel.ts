@@ -1,7 +1,14 @@
 import { make } from "../../dom/elements";
 import type { Frame } from "../../gen/phrenic/v1/frames_pb";
 import type { GraphSpec } from "../../graphs/catalogue";
-import { besideGraph, joinSeries, studentGraphs } from "../../graphs/student_graphs";
+import {
+  besideGraph,
+  joinSeries,
+  type PredictionSubject,
+  predictionSubjects,
+  studentGraphs,
+} from "../../graphs/student_graphs";
+import type { ShownReferences } from "../../graphs/references";
 import { TimeSeries } from "../../state/time_series";
 import { GraphTile } from "../readings/graph_tile";
 import { t } from "../../language/translate";
@@ -22,6 +29,8 @@ export class StudentGraphsPanel {
   private readonly kinds = make("div", { className: "causes kinds", role: "group", ariaLabel: t("Second graph") });
   private readonly joined = new TimeSeries(2 * span);
   private specs: ReturnType<typeof studentGraphs> = { volume: undefined, others: [] };
+  /** What can be predicted in the scene. */
+  subjects: PredictionSubject[] = [];
   private shown: GraphTile[] = [];
   private chosen = 0;
   /** The name of the second session in the graphs. */
@@ -33,6 +42,7 @@ export class StudentGraphsPanel {
     private readonly history: TimeSeries,
     private readonly beside: SeriesBeside | undefined,
     private readonly fileName: () => string,
+    private readonly references: () => ShownReferences | undefined = () => undefined,
   ) {
     this.element.append(make("h2", { className: "unseen" }, t("Graphs")), this.tiles, this.kinds);
   }
@@ -43,6 +53,7 @@ export class StudentGraphsPanel {
     const key = JSON.stringify(specs);
     if (key === this.key) return;
     [this.key, this.specs, this.chosen] = [key, specs, 0];
+    this.subjects = predictionSubjects(frame);
     this.build();
   }
 
@@ -57,11 +68,6 @@ export class StudentGraphsPanel {
     for (const tile of this.shown) tile.show({ start: end - span, end }, undefined);
   }
 
-  /** Key of the lung volume in the history; undefined for a scene without one. */
-  get volumeKey(): string | undefined {
-    return this.specs.volume?.curves[0].key;
-  }
-
   private get drawn(): TimeSeries {
     return this.beside === undefined ? this.history : this.joined;
   }
@@ -71,7 +77,9 @@ export class StudentGraphsPanel {
     this.label = this.beside?.label() ?? "";
     const specs = [volume, others[this.chosen]].filter((each) => each !== undefined);
     const events = { zoom: () => undefined, resume: () => undefined, cursor: () => undefined };
-    this.shown = specs.map((spec) => new GraphTile(this.withBeside(spec), this.drawn, this.fileName, events));
+    this.shown = specs.map(
+      (spec) => new GraphTile(this.withBeside(spec), this.drawn, this.fileName, events, this.references),
+    );
     this.tiles.replaceChildren(...this.shown.map(({ element }) => element));
     this.kinds.hidden = others.length < 2;
     this.kinds.replaceChildren(...others.map(({ title }, i) => this.kindButton(title, i)));

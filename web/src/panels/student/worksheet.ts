@@ -61,15 +61,18 @@ function questionRoom(question: Question): HTMLElement[] {
     const blank = make("span", { className: "blank" });
     return [words, make("p", {}, t("Answer: "), blank, ` ${question.number.unit}`), ...ruled("Because:", 1)];
   }
+  if (question.prediction !== undefined) return [words, predictionAxes(), ...ruled("Because:", 1)];
   const boxes = question.answers.map((answer) => make("li", {}, make("span", { className: "box" }), answer.words));
   return [words, make("ul", {}, ...boxes), ...ruled("Because:", 1)];
 }
 
-function answerOf({ words, answers, number, explanation }: Question): HTMLElement[] {
+function answerOf({ words, answers, number, explanation, prediction }: Question): HTMLElement[] {
   const right =
-    number === undefined
-      ? answers.filter((answer) => answer.right).map((answer) => answer.words)
-      : [`${number.value} ${number.unit}, ${number.tolerance} more or less`];
+    prediction !== undefined
+      ? [t("a curve within {0} of the breath on average", prediction.tolerance)]
+      : number === undefined
+        ? answers.filter((answer) => answer.right).map((answer) => answer.words)
+        : [`${number.value} ${number.unit}, ${number.tolerance} more or less`];
   const list = make("ul", {}, ...right.map((each) => make("li", {}, make("b", {}, each))));
   return [make("p", { className: "asked" }, words), list, make("p", {}, explanation)];
 }
