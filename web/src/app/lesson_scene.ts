@@ -1,8 +1,9 @@
 import { create } from "@bufbuild/protobuf";
 import { fields, tissueFields } from "../appearance/fields";
 import type { LayerStyles } from "../appearance/layer_styles";
-import { type LessonView, LessonViewSchema } from "../gen/phrenic/v1/lesson_pb";
+import { type LessonMeasurement, type LessonView, LessonViewSchema } from "../gen/phrenic/v1/lesson_pb";
 import type { Session } from "../gen/phrenic/v1/session_pb";
+import type { KeptMeasurement } from "../geometry/measuring";
 import type { SceneNames } from "../session/lessons";
 import type { Signal } from "../state/signal";
 import { cutKinds } from "../viewer/clipping";
@@ -12,14 +13,15 @@ import type { SceneTools } from "./scene_tools";
 /** The fields that a step may show. */
 const colourable = [...fields, ...tissueFields];
 
-/** Returns the names that the lessons of a scene with these layers may use. */
-export function sceneNames(scene: string, layers: string[]): SceneNames {
+/** Returns the names that the lessons of a scene with these layers and bodies may use. */
+export function sceneNames(scene: string, layers: string[], bodies: string[] = []): SceneNames {
   const colourings = ["own", ...colourable.map(({ kind }) => kind)];
-  return { scene, cameras: viewNames, cuts: cutKinds, colourings, layers };
+  return { scene, cameras: viewNames, cuts: cutKinds, colourings, layers, bodies };
 }
 
 /** Resolves once the session and the layers of its scene are known. */
-export function whenShown(session: Signal<Session | undefined>, { all }: LayerStyles): Promise<SceneNames> {
+export function whenShown(session: Signal<Session | undefined>, styles: LayerStyles): Promise<SceneNames> {
+  const { all } = styles;
   return new Promise((resolve) => {
     const check = () => {
       if (session.value === undefined || all.value.length === 0) return;
@@ -27,6 +29,7 @@ export function whenShown(session: Signal<Session | undefined>, { all }: LayerSt
         sceneNames(
           session.value.scene,
           all.value.map(({ layer }) => layer),
+          styles.bodyNames,
         ),
       );
     };
@@ -37,7 +40,7 @@ export function whenShown(session: Signal<Session | undefined>, { all }: LayerSt
 
 /** Applies a step's view; unset fields change nothing. Requires: the names are those of `sceneNames`. */
 export function showLessonView(
-  { camera, cut, colouring, hiddenLayers, pose, cutPosition, cutFlipped }: LessonView,
+  { camera, cut, colouring, hiddenLayers, pose, cutPosition, cutFlipped, measurements }: LessonView,
   tools: SceneTools,
   layerStyles: LayerStyles,
 ): void {
@@ -52,6 +55,16 @@ export function showLessonView(
     const wanted = !hiddenLayers.includes(layer) && layerStyles.shownByScene(layer);
     if (visible !== wanted) layerStyles.change(layer, { visible: wanted });
   }
+  tools.measuring.measurements.replaceKept(measurements.map(keptOf));
+}
+
+function keptOf({ tool, points }: LessonMeasurement): KeptMeasurement {
+  const places = points.map(({ body, rest }) => ({ body, rest: [rest!.x, rest!.y, rest!.z] as const }));
+  return { tool: tool as KeptMeasurement["tool"], points: places };
+}
+
+function inLesson({ tool, points }: KeptMeasurement) {
+  return { tool: tool as string, points: points.map(({ body, rest: [x, y, z] }) => ({ body, rest: { x, y, z } })) };
 }
 
 /** Returns what is shown now as the view of a step. */
@@ -65,5 +78,6 @@ export function keptLessonView(tools: SceneTools, layerStyles: LayerStyles): Les
     ...(kind === "none" ? {} : { cutPosition: fraction, cutFlipped: flipped }),
     colouring,
     hiddenLayers: hidden.map(({ layer }) => layer),
+    measurements: tools.measuring.measurements.kept().map(inLesson),
   });
 }

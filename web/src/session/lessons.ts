@@ -44,6 +44,7 @@ export interface SceneNames {
   cuts: readonly string[];
   colourings: readonly string[];
   layers: readonly string[];
+  bodies: readonly string[];
 }
 
 /** Throws Error if the lesson is about another scene, or, naming the field, if a view has an unknown name. */
@@ -55,7 +56,8 @@ export function checkLesson({ scene, steps }: Lesson, names: SceneNames): void {
   steps.forEach(({ view }, i) => view && checkView(view, `steps[${i}].view`, names));
 }
 
-function checkView({ camera, cut, colouring, hiddenLayers }: LessonView, path: string, names: SceneNames): void {
+function checkView(view: LessonView, path: string, names: SceneNames): void {
+  const { camera, cut, colouring, hiddenLayers, measurements } = view;
   const fields: [string, string[], readonly string[]][] = [
     ["camera", [camera], names.cameras],
     ["cut", [cut], names.cuts],
@@ -65,6 +67,13 @@ function checkView({ camera, cut, colouring, hiddenLayers }: LessonView, path: s
   for (const [field, values, known] of fields) {
     const unknown = values.find((value) => value !== "" && !known.includes(value));
     if (unknown !== undefined) throw new Error(`${path}.${field}: "${unknown}" is not one of ${known.join(", ")}`);
+  }
+  for (const [i, { points }] of measurements.entries()) {
+    const k = points.findIndex(({ body }) => !names.bodies.includes(body));
+    if (k >= 0)
+      throw new Error(
+        `${path}.measurements[${i}].points[${k}].body: the scene "${names.scene}" has no body "${points[k].body}"`,
+      );
   }
 }
 
