@@ -46,7 +46,7 @@ Box LungBox(bool left, double low, double high) {
 }  // namespace
 
 Mesh LungLobe(Lobe lobe, bool left, double edge_length) {
-  constexpr double kMaxEdge = 10, kDetail = 5;
+  constexpr double kMaxEdge = 10, kDetail = 3.5;
   const Field field = [lobe, left](const Eigen::Vector3d& x) { return LobeField(lobe, left, x); };
   const Box box = lobe == Lobe::kUpper    ? LungBox(left, left ? 150 : 230, 405)
                   : lobe == Lobe::kMiddle ? LungBox(left, 150, 275)
@@ -57,7 +57,7 @@ Mesh LungLobe(Lobe lobe, bool left, double edge_length) {
 // The sheet is polygonised in the coordinates (x, y, s), s the height above the fissure, stretched so that the sheet is
 // as thick as its triangles are long.
 Mesh LungFissure(Fissure fissure, bool left, double edge_length) {
-  constexpr double kMaxEdge = 12, kDetail = 4, kThick = 1.2, kRim = 2;
+  constexpr double kMaxEdge = 6, kDetail = 4, kThick = 1.2, kRim = 2;
   const double edge = std::min(edge_length, kMaxEdge), half = std::max(kDetail, 0.7 * edge);
   const bool oblique = fissure == Fissure::kOblique;
   const double steep = oblique ? 1.35 : 1;  // z per thickness

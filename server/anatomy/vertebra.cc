@@ -106,12 +106,12 @@ double SpinousProcess(const Shape& s, const Eigen::Vector3d& x) {
   return Capsule(flat, from, to, lumbar ? 8.5 : 6.2, lumbar ? 8.0 : 4.8) / 1.15;
 }
 
-// How far a point is beyond the faces of the joints: those of the next vertebrae are there.
+// How far a point is beyond the faces of the joints, near them: the processes of the next vertebrae are there.
 double BeyondFacets(const Shape& s, const Eigen::Vector3d& x) {
-  constexpr double kOfFacet = 11;  // of the other vertebra's process from the joint [mm]
+  constexpr double kOfFacet = 11, kRoundedFacet = 3;  // where the other process ends, around the joint [mm]
   const auto beyond = [&x](const FacetJoint& joint, double side) {
-    const double apart = (x - joint.at).norm();
-    return apart > kOfFacet ? -kOfFacet : kFacetGap / 2 + side * joint.normal.dot(x - joint.at);
+    const double from_face = kFacetGap / 2 + side * joint.normal.dot(x - joint.at);
+    return SmoothMin(from_face, kOfFacet - (x - joint.at).norm(), kRoundedFacet);
   };
   return std::max(beyond(s.above, 1), beyond(s.below, -1));
 }

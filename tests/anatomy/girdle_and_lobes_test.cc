@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "server/mesh/nearest.h"
+#include "server/mesh/tetrahedra.h"
 #include "server/mesh/topology.h"
 #include "server/mesh/triangle_tree.h"
 #include "server/mesh/units.h"
@@ -27,7 +28,8 @@ class ClosedPart {
     for (const auto& x : points.colwise()) {
       const SurfacePoint at = tree_.Nearest(mesh_.vertices, boxes_, x, kWithin * kMillimetre);
       if (at.triangle < 0) continue;
-      smallest = std::min(smallest, (at.facing > 0 ? -1 : 1) * std::sqrt(at.squared) / kMillimetre);
+      const bool inside = at.facing > 0 && WindingNumber(mesh_, x) > 0.5;  // the faces at a sharp tip face both ways
+      smallest = std::min(smallest, (inside ? -1 : 1) * std::sqrt(at.squared) / kMillimetre);
     }
     return smallest;
   }
