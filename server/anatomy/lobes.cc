@@ -11,8 +11,8 @@ namespace phrenic::anatomy {
 namespace {
 
 constexpr double kHalfGap = 0.6;         // between a lobe and the middle of its fissure [mm]
-constexpr double kRoundedEdge = 4;       // of a lobe, so that the fissure is a groove [mm]
-constexpr double kOutsideLung = 0.5;     // how far a fissure's sheet ends outside of the lung [mm]
+constexpr double kRoundedEdge = 2.5;       // of a lobe, so that the fissure is a groove [mm]
+constexpr double kOutsideLung = 0.2;     // how far a fissure's sheet ends outside of the lung [mm]
 constexpr double kHighestFissure = 345;  // z of the fissures [mm]
 
 // Returns z of the oblique fissure [mm]; that of the left lung begins half a vertebra higher.

@@ -18,7 +18,7 @@ enum class Fissure { kOblique = 1, kHorizontal = 2 };
 // Between two lobes are 1.2 mm. Requires: the left lung has no middle lobe.
 Mesh LungLobe(Lobe lobe, bool left, double edge_length);
 
-// Returns a fissure as a sheet 1.2 mm thick that ends 0.5 mm outside of the lung's surface, where it is seen as a line
+// Returns a fissure as a sheet 1.2 mm thick that ends 0.2 mm outside of the lung's surface, where it is seen as a line
 // [mm]: closed, genus 0, edges of about `edge_length` [mm], at most 6 mm. Requires: the left lung has no horizontal
 // one.
 Mesh LungFissure(Fissure fissure, bool left, double edge_length);

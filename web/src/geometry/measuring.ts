@@ -14,7 +14,10 @@ export interface KeptMeasurement {
 export const mostMeasurements = 12;
 
 /** Returns what is wrong with a measurement of a file or an address, after its field; undefined if nothing is. */
-export function faultOfMeasurement(tool: string, points: { rest?: { [k in "x" | "y" | "z"]: number } }[]): string | undefined {
+export function faultOfMeasurement(
+  tool: string,
+  points: { rest?: { [k in "x" | "y" | "z"]: number } }[],
+): string | undefined {
   const known = Object.keys(pointsOfKept);
   if (!known.includes(tool)) return `tool: "${tool}" is not one of ${known.join(", ")}`;
   const needed = pointsOfKept[tool as KeptMeasurement["tool"]];

@@ -1,6 +1,12 @@
 import { fromJson, type JsonValue, toJson } from "@bufbuild/protobuf";
 import { faultOfMeasurement, mostMeasurements } from "../geometry/measuring";
-import { type Lesson, LessonSchema, type LessonStep, type LessonView, type Question } from "../gen/phrenic/v1/lesson_pb";
+import {
+  type Lesson,
+  LessonSchema,
+  type LessonStep,
+  type LessonView,
+  type Question,
+} from "../gen/phrenic/v1/lesson_pb";
 
 /** Largest size of a lesson's file [bytes], and most steps. */
 const maxBytes = 1_000_000;
