@@ -31,8 +31,8 @@ double StomachShape(const Eigen::Vector3d& x) {
 }
 
 // Returns what is left of a shape below the diaphragm.
-double UnderSheet(double shape, const Eigen::Vector3d& x) {
-  return shape > kOrganFar ? shape : SmoothMax(shape, BelowDiaphragm(x, kBelowSheet), 8);
+double UnderSheet(double shape, const Eigen::Vector3d& x, double gap = kBelowSheet) {
+  return shape > kOrganFar ? shape : SmoothMax(shape, BelowDiaphragm(x, gap), 8);
 }
 
 // Returns what is left of a shape beside the stomach.
@@ -70,6 +70,8 @@ double KidneyShape(const Eigen::Vector3d& x, const Eigen::Vector3d& centre) {
   return SmoothMax(Ellipsoid(p, Eigen::Vector3d::Zero(), {30, 22, 57}), hilum, 9);
 }
 
+constexpr double kKidneyBelowSheet = 7;  // room for the sheet, which bulges backwards in a breath [mm]
+
 Mesh Kidney(const Field& field, double low, double edge_length) {
   return ImplicitSurface(field, {{15, -15, low}, {110, 85, low + 135}}, std::min(edge_length, kCoarsestOrgan),
                          kOrganDetail);
@@ -81,13 +83,15 @@ Mesh LeftKidney(double edge_length) {
   const Field field = [](const Eigen::Vector3d& x) {
     const double shape = KidneyShape(x, {62, 32, 68});
     if (shape > kOrganFar) return shape;
-    return UnderSheet(SmoothMax(shape, kFromSpleen - SpleenField(x), 5), x);
+    return UnderSheet(SmoothMax(shape, kFromSpleen - SpleenField(x), 5), x, kKidneyBelowSheet);
   };
   return Kidney(field, 0, edge_length);
 }
 
 Mesh RightKidney(double edge_length) {
-  const Field field = [](const Eigen::Vector3d& x) { return UnderSheet(KidneyShape(x, {62, 32, 55}), x); };
+  const Field field = [](const Eigen::Vector3d& x) {
+    return UnderSheet(KidneyShape(x, {62, 32, 55}), x, kKidneyBelowSheet);
+  };
   return Mirrored(Kidney(field, -13, edge_length));
 }
 

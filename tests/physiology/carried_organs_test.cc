@@ -42,10 +42,16 @@ double SmallestGap(const Model& model, const State& state, const std::string& or
   return 1e3 * smallest;
 }
 
+// Compiled once.
+const std::shared_ptr<const Model>& CarriedThorax() {
+  static const std::shared_ptr<const Model> model = CompileShipped("thorax");
+  return model;
+}
+
 class CarriedOrgans : public testing::TestWithParam<const char*> {};
 
 TEST_P(CarriedOrgans, DoNotPierceTheSheetAndKeepTheirSize) {
-  static const std::shared_ptr<const Model> model = CompileShipped("thorax");
+  const auto& model = CarriedThorax();
   v1::Parameters parameters = model->parameters;
   parameters.MergeFrom(*FindPreset(model->scene, GetParam()));
   constexpr double kStep = 1e-3;
@@ -88,10 +94,10 @@ double DescentOf(const Model& model, const State& state, const std::string& name
 }
 
 // 0.6 to 0.7 of the dome's descent (Song et al., J Magn Reson Imaging 2011;33:143), 4.5 to 9.8 mm in free breathing
-// (interquartile range of 62 people, Radiat Oncol 2013;8:248), 39 mm from full expiration to full inspiration (Radiother
-// Oncol 1994;32:84), of which a deep breath from rest is a part.
+// (interquartile range of 62 people, Radiat Oncol 2013;8:248), 39 mm from full expiration to full inspiration
+// (Radiother Oncol 1994;32:84), of which a deep breath from rest is a part.
 TEST(CarriedKidneys, DescendAboutAsPeoplesDo) {
-  const auto model = CompileShipped("thorax");
+  const auto& model = CarriedThorax();
   const State quiet = AtEndOfInspiration(*model, "quiet"), deep = AtEndOfInspiration(*model, "deep");
   for (const char* kidney : {"kidney-right", "kidney-left"}) {
     EXPECT_GT(DescentOf(*model, quiet, kidney), 4.5) << kidney;
@@ -103,7 +109,7 @@ TEST(CarriedKidneys, DescendAboutAsPeoplesDo) {
 
 // The sternal end of a clavicle goes with the manubrium; its other end and the scapula stay, and it keeps its length.
 TEST(CarriedClavicles, HangBetweenManubriumAndScapula) {
-  const auto model = CompileShipped("thorax");
+  const auto& model = CarriedThorax();
   const State deep = AtEndOfInspiration(*model, "deep"), rest = model->InitialState();
   for (const char* name : {"clavicle-right", "clavicle-left"}) {
     const Points at_rest = PlacedByName(*model, rest, name), moved = PlacedByName(*model, deep, name);
@@ -119,7 +125,7 @@ TEST(CarriedClavicles, HangBetweenManubriumAndScapula) {
 
 // Lobes do not pass through each other, nor through the sheet, as far as the lungs do not.
 TEST(CarriedLobes, KeepTogetherInADeepBreath) {
-  const auto model = CompileShipped("thorax");
+  const auto& model = CarriedThorax();
   const State deep = AtEndOfInspiration(*model, "deep");
   for (const std::string side : {"right", "left"}) {
     const NearestSearch lower(PlacedByName(*model, deep, "lobe-lower-" + side));

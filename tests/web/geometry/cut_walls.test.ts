@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { wallsInCut } from "../../../web/src/geometry/cut_walls";
+import { lumenInCut, wallsInCut } from "../../../web/src/geometry/cut_walls";
 
 const [radius, thickness, around] = [0.01, 0.002, 60];
 
@@ -54,4 +54,12 @@ test("ASurfaceTurnedInsideOutHasItsWallOutside", () => {
   const quads = wallsInCut(positions, triangles.reverse(), { axis: 2, at: 0.03 }, thickness, 0);
   const distances = Array.from({ length: quads.length / 3 }, (_, i) => Math.hypot(quads[3 * i], quads[3 * i + 1]));
   expect(Math.max(...distances)).toBeGreaterThan(radius + 0.9 * thickness);
+});
+
+test("TheLumenFillsTheOutline", () => {
+  const { positions, triangles } = tube();
+  const quads = lumenInCut(positions, triangles, { axis: 2, at: 0.03 }, 5e-4, 1e-4);
+  expect(area(quads)).toBeCloseTo((around / 2) * radius ** 2 * Math.sin((2 * Math.PI) / around), 6);
+  for (let i = 0; i < quads.length; i += 3) expect(quads[i + 2]).toBeCloseTo(0.0301, 9);
+  expect(lumenInCut(positions, triangles, { axis: 2, at: 0.2 }, 5e-4, 0)).toEqual([]);
 });

@@ -1,4 +1,4 @@
-import type { AxisPlane } from "./section";
+import { axesOf, type AxisPlane, outlineOf } from "./section";
 
 /** Corners of a quadrilateral as two triangles. */
 export const quadIndices = [0, 1, 2, 0, 2, 3];
@@ -33,6 +33,39 @@ export function wallsInCut(
       // prettier-ignore
       for (let k = 0; k < 3; k++) quads.push(k === axis ? at + shift : from[k] + depth * inwards[k]);
   }
+  return quads;
+}
+
+/**
+ * Returns the inside of a closed surface where a plane cuts it, as quadrilaterals `step` high [m]: x y z of four corners.
+ * They follow the outline within a step, which the wall of a hollow organ covers.
+ */
+export function lumenInCut(
+  positions: ArrayLike<number>,
+  triangles: ArrayLike<number>,
+  plane: AxisPlane,
+  step: number,
+  shift: number,
+): number[] {
+  const outline = outlineOf(positions, triangles, plane, step);
+  const [a, b] = axesOf(plane.axis);
+  const quads: number[] = [];
+  outline?.spans.forEach((row, j) => {
+    const low = outline.low[1] + j * step;
+    for (let i = 0; i + 1 < row.length; i += 2) {
+      for (const [across, up] of [
+        [row[i], 0],
+        [row[i + 1], 0],
+        [row[i + 1], step],
+        [row[i], step],
+      ]) {
+        // prettier-ignore
+        const corner = [0, 0, 0];
+        [corner[plane.axis], corner[a], corner[b]] = [plane.at + shift, across, low + up];
+        quads.push(...corner);
+      }
+    }
+  });
   return quads;
 }
 

@@ -1,5 +1,5 @@
 import * as THREE from "three";
-import { quadIndices, wallsInCut } from "../geometry/cut_walls";
+import { lumenInCut, quadIndices, wallsInCut } from "../geometry/cut_walls";
 import { axesOf, type AxisPlane, type SectionPicture } from "../geometry/section";
 import type { BodyView } from "./body_view";
 import { tissueOf } from "./tissues";
@@ -117,7 +117,10 @@ function pictureMesh(picture: SectionPicture, kept: THREE.Vector3): THREE.Mesh {
   return mesh;
 }
 
-/** The walls of hollow organs where a plane cuts them; their lumen is the flat section of the body. */
+/** Height of the strips that fill a lumen [m]; less than any wall. */
+const strip = 8e-4;
+
+/** The walls and the lumen of hollow organs where a plane cuts them. */
 export class CutWalls {
   readonly object = new THREE.Mesh(
     new THREE.BufferGeometry(),
@@ -129,23 +132,27 @@ export class CutWalls {
     this.object.visible = false;
   }
 
-  /** Shows the walls of bodies in the plane, whose side of `kept` is drawn; none without a plane. */
+  /** Shows walls and lumina of bodies in the plane, whose side of `kept` is drawn; none without a plane. */
   show(views: readonly BodyView[], plane: AxisPlane | undefined, kept: THREE.Vector3 | undefined): void {
     const corners: number[] = [];
     const colors: number[] = [];
+    const add = (quads: number[], color: string) => {
+      const { r, g, b } = new THREE.Color(color);
+      for (let i = 0; i < quads.length; i += 3) {
+        corners.push(quads[i], quads[i + 1], quads[i + 2]);
+        colors.push(r, g, b);
+      }
+    };
     for (const { body, group, isFaded, positions } of plane === undefined ? [] : views) {
-      const { wall } = tissueOf(body);
+      const { wall, section = body.color } = tissueOf(body);
       if (wall === undefined || !group.visible || isFaded) continue;
       const shift = cutInset * Math.sign(kept!.getComponent(plane!.axis));
-      const quads = wallsInCut(positions.array, body.triangles, plane!, wall, shift);
-      const { r, g, b } = new THREE.Color(body.color);
-      for (let i = 0; i < quads.length; i += 3) colors.push(r, g, b);
-      for (const each of quads) corners.push(each);
+      add(lumenInCut(positions.array, body.triangles, plane!, strip, 2 * shift), section);
+      add(wallsInCut(positions.array, body.triangles, plane!, wall, shift), body.color);
     }
     this.object.visible = corners.length > 0;
     if (!this.object.visible) return;
-    const quads = corners.length / 12;
-    const index = Array.from({ length: 6 * quads }, (_, i) => 4 * Math.floor(i / 6) + quadIndices[i % 6]);
+    const index = Array.from({ length: corners.length / 2 }, (_, i) => 4 * Math.floor(i / 6) + quadIndices[i % 6]);
     this.object.geometry.dispose();
     this.object.geometry = new THREE.BufferGeometry()
       .setAttribute("position", new THREE.Float32BufferAttribute(corners, 3))
