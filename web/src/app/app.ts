@@ -448,7 +448,8 @@ export class App {
     try {
       this.tools.measuring.measurements.replaceKept(measurementsOf(this.target.address));
     } catch (error) {
-      this.controller.notice.set((error as Error).message);
+      // The state of the session, which follows the scene at once, clears the notice.
+      queueMicrotask(() => this.controller.notice.set((error as Error).message));
     }
   }
 
