@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/anatomy/implicit_surface.h"
+#include "server/anatomy/meshing/implicit_surface.h"
+#include "server/anatomy/meshing/tube.h"
 #include "server/anatomy/spaces.h"
 #include "server/anatomy/vessels.h"
 
 namespace phrenic::anatomy {
 namespace {
 
-constexpr double kBelowSheet = 4.5, kFromStomach = 2, kCoarsestOrgan = 10, kOrganDetail = 5;  // [mm]
+constexpr double kBelowSheet = 4.5, kFromStomach = 2, kFromSpleen = 2, kCoarsestOrgan = 10, kOrganDetail = 5;  // [mm]
 constexpr double kOrganFar =
     8;  // beyond this distance from one of the shapes that an organ is cut from, no other counts
 
@@ -30,8 +31,8 @@ double StomachShape(const Eigen::Vector3d& x) {
 }
 
 // Returns what is left of a shape below the diaphragm.
-double UnderSheet(double shape, const Eigen::Vector3d& x) {
-  return shape > kOrganFar ? shape : SmoothMax(shape, BelowDiaphragm(x, kBelowSheet), 8);
+double UnderSheet(double shape, const Eigen::Vector3d& x, double gap = kBelowSheet) {
+  return shape > kOrganFar ? shape : SmoothMax(shape, BelowDiaphragm(x, gap), 8);
 }
 
 // Returns what is left of a shape beside the stomach.
@@ -58,7 +59,41 @@ double SpleenField(const Eigen::Vector3d& x) {
   return UnderSheet(BesideStomach(shape, x), x);
 }
 
+// A bean of 114 x 60 x 44 mm, `centre` on the left side: its hilum faces forwards and to the spine, its upper pole is
+// nearer to the spine and further back.
+double KidneyShape(const Eigen::Vector3d& x, const Eigen::Vector3d& centre) {
+  static const Eigen::Quaterniond upright = Eigen::AngleAxisd(0.45, Eigen::Vector3d::UnitZ()) *
+                                            Eigen::AngleAxisd(0.17, Eigen::Vector3d::UnitY()) *
+                                            Eigen::AngleAxisd(-0.12, Eigen::Vector3d::UnitX());
+  const Eigen::Vector3d p = upright * (x - centre);
+  const double hilum = 22 - (p - Eigen::Vector3d(-43, 0, 0)).cwiseProduct(Eigen::Vector3d(1, 0.8, 0.8)).norm();
+  return SmoothMax(Ellipsoid(p, Eigen::Vector3d::Zero(), {30, 22, 57}), hilum, 9);
+}
+
+constexpr double kKidneyBelowSheet = 7;  // room for the sheet, which bulges backwards in a breath [mm]
+
+Mesh Kidney(const Field& field, double low, double edge_length) {
+  return ImplicitSurface(field, {{15, -15, low}, {110, 85, low + 135}}, std::min(edge_length, kCoarsestOrgan),
+                         kOrganDetail);
+}
+
 }  // namespace
+
+Mesh LeftKidney(double edge_length) {
+  const Field field = [](const Eigen::Vector3d& x) {
+    const double shape = KidneyShape(x, {62, 32, 68});
+    if (shape > kOrganFar) return shape;
+    return UnderSheet(SmoothMax(shape, kFromSpleen - SpleenField(x), 5), x, kKidneyBelowSheet);
+  };
+  return Kidney(field, 0, edge_length);
+}
+
+Mesh RightKidney(double edge_length) {
+  const Field field = [](const Eigen::Vector3d& x) {
+    return UnderSheet(KidneyShape(x, {62, 32, 55}), x, kKidneyBelowSheet);
+  };
+  return Mirrored(Kidney(field, -13, edge_length));
+}
 
 Mesh Liver(double edge_length) {
   return ImplicitSurface(LiverField, {{-130, -95, 60}, {80, 105, 232}}, std::min(edge_length, kCoarsestOrgan),

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "server/anatomy/implicit_surface.h"
+#include "server/anatomy/meshing/implicit_surface.h"
 
 namespace phrenic::anatomy {
 namespace {

@@ -10,10 +10,12 @@
 #include "server/anatomy/dimensions.h"
 #include "server/anatomy/heart.h"
 #include "server/anatomy/inner_cage.h"
+#include "server/anatomy/lobes.h"
 #include "server/anatomy/lung.h"
 #include "server/anatomy/middle_sheet.h"
 #include "server/anatomy/physique.h"
 #include "server/anatomy/rib.h"
+#include "server/anatomy/shoulder_girdle.h"
 #include "server/anatomy/sternum.h"
 #include "server/anatomy/vertebra.h"
 #include "server/anatomy/vessels.h"
@@ -50,7 +52,11 @@ double DefaultResolution(v1::Structure structure, v1::Sheet sheet) {
     case v1::STRUCTURE_STOMACH:
       return 6.5;
     case v1::STRUCTURE_LIVER:
+    case v1::STRUCTURE_LUNG_LOBE:
       return 7.5;
+    case v1::STRUCTURE_KIDNEY:
+    case v1::STRUCTURE_FISSURE:
+      return 6;
     default:
       return 4.1;
   }
@@ -65,6 +71,10 @@ double FinestResolution(v1::Structure structure) {
     case v1::STRUCTURE_LIVER:
     case v1::STRUCTURE_STOMACH:
     case v1::STRUCTURE_SPLEEN:
+    case v1::STRUCTURE_KIDNEY:
+    case v1::STRUCTURE_SCAPULA:
+    case v1::STRUCTURE_LUNG_LOBE:
+    case v1::STRUCTURE_FISSURE:
       return 2;
     default:
       return 1;
@@ -97,6 +107,19 @@ absl::Status NeedsNumber(const v1::Anatomy& part, int last) {
                                                  " ", part.number(), " in the generated thorax; use 1 to ", last));
 }
 
+// The left lung has an upper and a lower lobe, and no horizontal fissure.
+absl::Status NeedsPartOfLung(const v1::Anatomy& part) {
+  const bool lobe = part.structure() == v1::STRUCTURE_LUNG_LOBE;
+  if (absl::Status status = NeedsNumber(part, lobe ? 3 : 2); !status.ok()) return status;
+  if (absl::Status status = NeedsSide(part); !status.ok()) return status;
+  if (part.side() == v1::SIDE_RIGHT || part.number() == (lobe ? 3 : 1) || (lobe && part.number() == 1)) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("anatomy.number: the left lung has no ",
+                   lobe ? "middle lobe; use 1 (upper) or 3 (lower)" : "horizontal fissure; use 1 (oblique)"));
+}
+
 absl::Status CheckPart(const v1::Anatomy& part) {
   switch (part.structure()) {
     case v1::STRUCTURE_DIAPHRAGM:
@@ -119,7 +142,13 @@ absl::Status CheckPart(const v1::Anatomy& part) {
     case v1::STRUCTURE_VENA_CAVA:
       return NeedsNumber(part, kVenaeCavae);
     case v1::STRUCTURE_LUNG:
+    case v1::STRUCTURE_CLAVICLE:
+    case v1::STRUCTURE_SCAPULA:
+    case v1::STRUCTURE_KIDNEY:
       return NeedsSide(part);
+    case v1::STRUCTURE_LUNG_LOBE:
+    case v1::STRUCTURE_FISSURE:
+      return NeedsPartOfLung(part);
     case v1::STRUCTURE_RIB:
       if (absl::Status status = NeedsNumber(part, kRibs); !status.ok()) return status;
       return NeedsSide(part);
@@ -153,6 +182,12 @@ Mesh Organ(const v1::Anatomy& part, double edge_length) {
       return Stomach(edge_length);
     case v1::STRUCTURE_SPLEEN:
       return Spleen(edge_length);
+    case v1::STRUCTURE_KIDNEY:
+      return part.side() == v1::SIDE_RIGHT ? RightKidney(edge_length) : LeftKidney(edge_length);
+    case v1::STRUCTURE_LUNG_LOBE:
+      return LungLobe(static_cast<Lobe>(part.number()), part.side() == v1::SIDE_LEFT, edge_length);
+    case v1::STRUCTURE_FISSURE:
+      return LungFissure(static_cast<Fissure>(part.number()), part.side() == v1::SIDE_LEFT, edge_length);
     default:
       return {};
   }
@@ -178,6 +213,10 @@ Mesh InMillimetres(const v1::Anatomy& part, double edge_length, v1::Sheet sheet)
       return Vertebra(part.number(), edge_length);
     case v1::STRUCTURE_DISC:
       return Disc(part.number(), edge_length);
+    case v1::STRUCTURE_CLAVICLE:
+      return OnSide(part, LeftClavicle(edge_length));
+    case v1::STRUCTURE_SCAPULA:
+      return OnSide(part, LeftScapula(edge_length));
     case v1::STRUCTURE_LUNG:
       return part.side() == v1::SIDE_RIGHT ? RightLung(edge_length) : LeftLung(edge_length);
     default:
@@ -207,8 +246,12 @@ double Area(v1::Structure structure, v1::Sheet sheet) {
       return 50'000;
     case v1::STRUCTURE_LIVER:
       return 90'000;
+    case v1::STRUCTURE_LUNG_LOBE:
+      return 60'000;
     case v1::STRUCTURE_AORTA:
     case v1::STRUCTURE_SPLEEN:
+    case v1::STRUCTURE_SCAPULA:
+    case v1::STRUCTURE_FISSURE:
       return 25'000;
     default:
       return 11'000;

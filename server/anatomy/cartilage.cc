@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "server/anatomy/dimensions.h"
+#include "server/anatomy/meshing/smooth.h"
 #include "server/anatomy/rib.h"
-#include "server/anatomy/smooth.h"
 #include "server/anatomy/sternum.h"
 
 namespace phrenic::anatomy {

@@ -3,7 +3,7 @@
 #ifndef PHRENIC_SERVER_ANATOMY_CARTILAGE_H_
 #define PHRENIC_SERVER_ANATOMY_CARTILAGE_H_
 
-#include "server/anatomy/tube.h"
+#include "server/anatomy/meshing/tube.h"
 
 namespace phrenic::anatomy {
 

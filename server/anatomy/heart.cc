@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "server/anatomy/implicit_surface.h"
+#include "server/anatomy/meshing/implicit_surface.h"
 #include "server/anatomy/spaces.h"
 
 namespace phrenic::anatomy {

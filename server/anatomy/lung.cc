@@ -6,7 +6,7 @@
 
 #include "server/anatomy/diaphragm_shape.h"
 #include "server/anatomy/dimensions.h"
-#include "server/anatomy/implicit_surface.h"
+#include "server/anatomy/meshing/implicit_surface.h"
 
 namespace phrenic::anatomy {
 namespace {

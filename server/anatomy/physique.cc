@@ -6,7 +6,7 @@
 
 #include "server/anatomy/diaphragm_shape.h"
 #include "server/anatomy/dimensions.h"
-#include "server/anatomy/smooth.h"
+#include "server/anatomy/meshing/smooth.h"
 #include "server/mesh/units.h"
 #include "server/schema/schema.h"
 

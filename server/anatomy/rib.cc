@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "server/anatomy/dimensions.h"
-#include "server/anatomy/smooth.h"
+#include "server/anatomy/meshing/smooth.h"
 
 namespace phrenic::anatomy {
 namespace {

@@ -5,7 +5,7 @@
 #ifndef PHRENIC_SERVER_ANATOMY_RIB_H_
 #define PHRENIC_SERVER_ANATOMY_RIB_H_
 
-#include "server/anatomy/tube.h"
+#include "server/anatomy/meshing/tube.h"
 
 namespace phrenic::anatomy {
 

@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
-#include "server/anatomy/edge_flips.h"
-#include "server/anatomy/plane_delaunay.h"
-#include "server/anatomy/plane_region.h"
-#include "server/anatomy/spaced_points.h"
+#include "server/anatomy/meshing/edge_flips.h"
+#include "server/anatomy/meshing/plane_delaunay.h"
+#include "server/anatomy/meshing/plane_region.h"
+#include "server/anatomy/meshing/spaced_points.h"
 #include "server/mesh/locality.h"
 #include "server/mesh/topology.h"
 

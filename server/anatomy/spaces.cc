@@ -5,8 +5,8 @@
 
 #include "server/anatomy/diaphragm_shape.h"
 #include "server/anatomy/dimensions.h"
-#include "server/anatomy/field.h"
 #include "server/anatomy/lung.h"
+#include "server/anatomy/meshing/field.h"
 
 namespace phrenic::anatomy {
 namespace {

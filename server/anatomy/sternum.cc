@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "server/anatomy/dimensions.h"
-#include "server/anatomy/implicit_surface.h"
-#include "server/anatomy/smooth.h"
+#include "server/anatomy/meshing/implicit_surface.h"
+#include "server/anatomy/meshing/smooth.h"
 
 namespace phrenic::anatomy {
 namespace {

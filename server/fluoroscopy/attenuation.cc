@@ -45,7 +45,7 @@ std::optional<Tissue> TissueOfName(std::string_view name) {
   if (HasAny(name, {"effusion", "fluid"})) return Tissue::kFluid;
   if (HasAny(name, {"pneumothorax", "bubble"}) || StartsWithAny(name, {"air-"})) return Tissue::kAir;
   if (StartsWithAny(name, {"heart", "aorta"}) || HasAny(name, {"cava", "vein", "vessel"})) return Tissue::kBlood;
-  if (StartsWithAny(name, {"liver", "spleen", "stomach"})) return Tissue::kOrgan;
+  if (StartsWithAny(name, {"liver", "spleen", "stomach", "kidney"})) return Tissue::kOrgan;
   if (HasAny(name, {"airway", "trachea"})) return Tissue::kAirway;
   if (HasAny(name, {"sternum", "manubrium", "xiphoid"})) return Tissue::kSternum;
   if (StartsWithAny(name, {"rib"})) return Tissue::kRib;
@@ -97,7 +97,8 @@ double LungCoefficient(double rest_volume, double volume) {
 }
 
 std::optional<Tissue> TissueOf(std::string_view name, std::string_view layer) {
-  if (layer == "mechanics") return std::nullopt;
+  // The lobes of the generated lungs are the lungs, drawn in parts.
+  if (layer == "mechanics" || name.starts_with("lobe-")) return std::nullopt;
   const std::optional<Tissue> tissue = TissueOfName(name);
   return tissue ? tissue : TissueOfName(layer);
 }

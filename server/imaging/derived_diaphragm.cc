@@ -12,7 +12,7 @@
 #include "absl/strings/str_format.h"
 #include "server/anatomy/diaphragm_shape.h"
 #include "server/anatomy/double_layer.h"
-#include "server/anatomy/plane_region.h"
+#include "server/anatomy/meshing/plane_region.h"
 #include "server/imaging/diaphragm_rim.h"
 #include "server/mesh/topology.h"
 #include "server/mesh/units.h"

@@ -3,12 +3,12 @@
 
 #include <map>
 
-#include "server/anatomy/implicit_surface.h"
-#include "server/anatomy/plane_delaunay.h"
-#include "server/anatomy/plane_region.h"
+#include "server/anatomy/meshing/implicit_surface.h"
+#include "server/anatomy/meshing/plane_delaunay.h"
+#include "server/anatomy/meshing/plane_region.h"
+#include "server/anatomy/meshing/spaced_points.h"
+#include "server/anatomy/meshing/tube.h"
 #include "server/anatomy/sheet_mesh.h"
-#include "server/anatomy/spaced_points.h"
-#include "server/anatomy/tube.h"
 #include "server/mesh/topology.h"
 #include "tests/anatomy/parts.h"
 

@@ -66,6 +66,23 @@ inline std::vector<v1::Anatomy> AbdominalOrgans() {
   return {Part(v1::STRUCTURE_LIVER), Part(v1::STRUCTURE_STOMACH), Part(v1::STRUCTURE_SPLEEN)};
 }
 
+inline std::vector<v1::Anatomy> Kidneys() {
+  return {Part(v1::STRUCTURE_KIDNEY, 0, v1::SIDE_RIGHT), Part(v1::STRUCTURE_KIDNEY, 0, v1::SIDE_LEFT)};
+}
+inline std::vector<v1::Anatomy> ShoulderGirdle() {
+  return {Part(v1::STRUCTURE_CLAVICLE, 0, v1::SIDE_RIGHT), Part(v1::STRUCTURE_CLAVICLE, 0, v1::SIDE_LEFT),
+          Part(v1::STRUCTURE_SCAPULA, 0, v1::SIDE_RIGHT), Part(v1::STRUCTURE_SCAPULA, 0, v1::SIDE_LEFT)};
+}
+inline std::vector<v1::Anatomy> LobesOf(v1::Side side) {
+  std::vector<v1::Anatomy> lobes = {Part(v1::STRUCTURE_LUNG_LOBE, 1, side), Part(v1::STRUCTURE_LUNG_LOBE, 3, side)};
+  if (side == v1::SIDE_RIGHT) lobes.push_back(Part(v1::STRUCTURE_LUNG_LOBE, 2, side));
+  return lobes;
+}
+inline std::vector<v1::Anatomy> Fissures() {
+  return {Part(v1::STRUCTURE_FISSURE, 1, v1::SIDE_RIGHT), Part(v1::STRUCTURE_FISSURE, 1, v1::SIDE_LEFT),
+          Part(v1::STRUCTURE_FISSURE, 2, v1::SIDE_RIGHT)};
+}
+
 inline std::vector<v1::Anatomy> AllParts() {
   std::vector<v1::Anatomy> parts = Bones();
   parts.push_back(Part(v1::STRUCTURE_DIAPHRAGM));
@@ -73,6 +90,12 @@ inline std::vector<v1::Anatomy> AllParts() {
   parts.push_back(Part(v1::STRUCTURE_LUNG, 0, v1::SIDE_LEFT));
   for (const v1::Anatomy& organ : Mediastinum()) parts.push_back(organ);
   for (const v1::Anatomy& organ : AbdominalOrgans()) parts.push_back(organ);
+  for (const v1::Anatomy& kidney : Kidneys()) parts.push_back(kidney);
+  for (const v1::Anatomy& bone : ShoulderGirdle()) parts.push_back(bone);
+  for (const v1::Side side : {v1::SIDE_RIGHT, v1::SIDE_LEFT}) {
+    for (const v1::Anatomy& lobe : LobesOf(side)) parts.push_back(lobe);
+  }
+  for (const v1::Anatomy& fissure : Fissures()) parts.push_back(fissure);
   return parts;
 }
 

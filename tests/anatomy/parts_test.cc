@@ -117,6 +117,13 @@ TEST(Parts, UnknownPartsAreRejectedByField) {
   ExpectRejected(Part(v1::STRUCTURE_LUNG), 0, "anatomy.side");
   ExpectRejected(Part(v1::STRUCTURE_DISC, 15), 0, "anatomy.number");
   ExpectRejected(Part(v1::STRUCTURE_VENA_CAVA), 0, "anatomy.number");
+  ExpectRejected(Part(v1::STRUCTURE_CLAVICLE), 0, "anatomy.side");
+  ExpectRejected(Part(v1::STRUCTURE_SCAPULA), 0, "anatomy.side");
+  ExpectRejected(Part(v1::STRUCTURE_KIDNEY), 0, "anatomy.side");
+  ExpectRejected(Part(v1::STRUCTURE_LUNG_LOBE, 1), 0, "anatomy.side");
+  ExpectRejected(Part(v1::STRUCTURE_LUNG_LOBE, 4, v1::SIDE_RIGHT), 0, "anatomy.number");
+  ExpectRejected(Part(v1::STRUCTURE_LUNG_LOBE, 2, v1::SIDE_LEFT), 0, "no middle lobe");
+  ExpectRejected(Part(v1::STRUCTURE_FISSURE, 2, v1::SIDE_LEFT), 0, "no horizontal fissure");
 }
 
 TEST(Parts, ResolutionOutOfRangeIsRejected) {

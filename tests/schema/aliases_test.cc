@@ -137,7 +137,7 @@ TEST(Aliases, AreInNoListOfAllowedValues) {
   scene.mutable_motions(0)->mutable_skin()->set_mode(static_cast<v1::SkinMode>(9));
   EXPECT_EQ(std::string(Validate(scene).message()),
             "motions[0].skin.mode: 9 is not one of SKIN_MODE_NEAREST_VERTICES, SKIN_MODE_TRIANGLES, "
-            "SKIN_MODE_SHEET, SKIN_MODE_SMOOTH");
+            "SKIN_MODE_SHEET, SKIN_MODE_SMOOTH, SKIN_MODE_BAR");
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ try {
   // A launch goes on in the next page, also where the browser keeps nothing.
   const launch = identity.launched ? here.hash : "";
   const open = (query: string) => location.assign(withPageView(query, viewNow()) + launch);
-  const subject = { sessionId, secondSessionId, view, lesson, open };
+  const subject = { sessionId, secondSessionId, view, lesson, address: here, open };
   new App(api, subject, chooser, identity, systemClock).start();
 } catch (error) {
   loading.replaceChildren(

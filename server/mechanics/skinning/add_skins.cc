@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/mechanics/skinning/bar_weights.h"
 #include "server/mechanics/skinning/inverse_distance_weights.h"
 #include "server/mechanics/skinning/sheet_skin.h"
 #include "server/mechanics/skinning/smooth_weights.h"
@@ -74,6 +75,21 @@ void SkinAllSmoothly(const std::vector<int>& bodies, const std::vector<int>& dri
   builder.ReportElement("seen", name, vertices, "vertices", "by smooth weights, computed per frame, not per step");
 }
 
+absl::Status SkinAllAsBars(const std::vector<int>& bodies, const std::vector<int>& drivers, const std::string& name,
+                           const std::string& path, ModelBuilder& builder) {
+  if (drivers.size() != 2) {
+    return FieldError(path, absl::StrCat("SKIN_MODE_BAR is between two bodies, not ", drivers.size(),
+                                         "; name the bodies at both ends of the bar"));
+  }
+  const SkinDrivers search(builder, drivers);
+  for (const int b : bodies) {
+    const Points& rest = builder.model.bodies[b].mesh.vertices;
+    AddSkin({.body = b, .weights = BarWeights(search, rest), .triangles = {}, .sheet = nullptr}, builder);
+    builder.ReportElement("seen", name, rest.cols(), "vertices", "as a bar between two bodies, computed per frame");
+  }
+  return absl::OkStatus();
+}
+
 absl::Status BindAllToTriangles(const std::vector<int>& bodies, const std::vector<int>& drivers,
                                 const std::string& name, const std::string& path, ModelBuilder& builder) {
   const auto binder = TriangleBinder::Make(builder, drivers, path);
@@ -126,6 +142,7 @@ absl::Status AddSkins(const v1::Skin& scene, const std::string& given, std::stri
     return BindAllToTriangles(*bodies, *drivers, name, drivers_field, builder);
   if (scene.mode() == v1::SKIN_MODE_SHEET)
     return BindAllToSheet(*bodies, *drivers, scene.thickness(), name, std::string(path), builder);
+  if (scene.mode() == v1::SKIN_MODE_BAR) return SkinAllAsBars(*bodies, *drivers, name, drivers_field, builder);
   if (scene.mode() == v1::SKIN_MODE_SMOOTH) {
     SkinAllSmoothly(*bodies, *drivers, name, builder);
   } else {

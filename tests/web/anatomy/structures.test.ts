@@ -38,7 +38,10 @@ const names = [
   ...numbered(12, (i) => `disc-t${i}`),
   ...numbered(5, (i) => `disc-l${i}`),
   ...["heart", "aorta", "superior-vena-cava", "inferior-vena-cava", "trachea", "oesophagus"],
-  ...["liver", "stomach", "spleen"],
+  ...["liver", "stomach", "spleen", "fissure-horizontal-right", "lobe-middle-right"],
+  ...sides.flatMap((side) =>
+    ["kidney", "clavicle", "scapula", "fissure-oblique", "lobe-upper", "lobe-lower"].map((name) => `${name}-${side}`),
+  ),
 ];
 /** Vertices of a diaphragm: right and left dome, right and left crus, and two of the central tendon. */
 const diaphragm = [-0.08, 0, 0.2, 0.08, 0, 0.2, -0.01, 0, 0.03, 0.01, 0, 0.03, -0.02, 0, 0.21, 0.02, 0, 0.21];
@@ -70,6 +73,8 @@ describe("the terminology", () => {
     expect(termsOf("rib-11-left")[0]).toMatchObject({ name: "Left 11th rib", latin: "Costa XI sinistra" });
     expect(termsOf("t10")[0]).toMatchObject({ name: "Tenth thoracic vertebra (T10)", latin: "Vertebra thoracica X" });
     expect(termsOf("lung-upper-left")[0].latin).toBe("Lobus superior pulmonis sinistri");
+    expect(termsOf("lobe-upper-left")[0].latin).toBe("Lobus superior pulmonis sinistri");
+    expect(termsOf("kidney-right")[0]).toMatchObject({ name: "Right kidney", latin: "Ren dexter" });
     expect(termsOf("cube")).toEqual([]);
   });
 });

@@ -112,3 +112,34 @@ test("ValuesAreFormattedInTheirUnits", () => {
   expect(quantityText("area", 0.0000503)).toBe("50.3 mm²");
   expect(quantityText("volume", 0.0012034)).toBe("1203 ml");
 });
+
+test("KeptMeasurementsAreFoundAgainByTheirPlacesAtRest", () => {
+  const measurements = measuring();
+  measurements.use("distance");
+  for (const vertex of [1, 2]) measurements.pick(at(vertex));
+  measurements.measureSurface({ name: "all", body: "tetrahedron", vertices: undefined });
+  const kept = measurements.kept();
+  expect(kept).toEqual([
+    {
+      tool: "distance",
+      points: [
+        { body: "tetrahedron", rest: [1, 0, 0] },
+        { body: "tetrahedron", rest: [0, 1, 0] },
+      ],
+    },
+    { tool: "body", points: [{ body: "tetrahedron", rest: [0, 0, 0] }] },
+  ]);
+  const other = measuring();
+  other.replaceKept(kept);
+  const values = (each: Measurements) => each.all.value.map((one) => each.values(one, scaled(2)));
+  expect(values(other)).toEqual(values(measurements));
+});
+
+test("AStepsMeasurementsReplaceThoseOfTheStepBeforeAndNotTheUsers", () => {
+  const measurements = measuring();
+  measurements.measureSurface({ name: "own", body: "tetrahedron", vertices: undefined });
+  measurements.replaceKept([{ tool: "surface", points: [{ body: "tetrahedron", rest: [0.9, 0.1, 0] }] }]);
+  expect(measurements.all.value.map(({ name }) => name)).toEqual(["own", "corner 1"]);
+  measurements.replaceKept([{ tool: "body", points: [{ body: "unknown", rest: [0, 0, 0] }] }]);
+  expect(measurements.all.value.map(({ name }) => name)).toEqual(["own"]);
+});

@@ -78,6 +78,15 @@ test("AClaimOfAnotherUnitIsNone", () => {
   expect(isClaimed(scene, claims, quantity(2.5, "mm"))).toBe(false);
 });
 
+test("AMeasurementOfABodyThatTheSceneLacksIsNamedByField", () => {
+  const points = [{ body: "rib-5-left", rest: { x: 0.1 } }];
+  const measurements = [{ tool: "body", points }];
+  const lesson = create(LessonSchema, { scene: "thorax", steps: [{ view: { measurements } }] });
+  const check = (bodies: string[]) => () => checkLesson(lesson, sceneNames("thorax", [], [], bodies));
+  expect(check(["rib-5-left"])).not.toThrow();
+  expect(check(["t1"])).toThrow('steps[0].view.measurements[0].points[0].body: the scene "thorax" has no body "rib-5-left"'); // prettier-ignore
+});
+
 describe.each(names)("the lesson %s", (name) => {
   const lesson = read(name);
   const { steps } = lesson;

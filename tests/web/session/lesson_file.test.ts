@@ -40,6 +40,19 @@ describe("a lesson's file", () => {
     ["steps[0].caption", lessonText(withStep({ caption: "" }))],
     ["steps[0].view.cutPosition: 2 is not", lessonText(withStep({ view: { cutPosition: 2 } }))],
     ["steps[0].view.pose", lessonText(withStep({ view: { pose: { eye: { x: 1 } } } }))],
+    ['steps[0].view.measurements[0].tool: "ruler"', lessonText(withStep({ view: { measurements: [{ tool: "ruler" }] } }))], // prettier-ignore
+    [
+      'steps[0].view.measurements[0].points: "angle" needs 3, not 1',
+      lessonText(withStep({ view: { measurements: [{ tool: "angle", points: [{ body: "t1", rest: {} }] }] } })),
+    ],
+    [
+      "steps[0].view.measurements[0].points[0].rest",
+      lessonText(withStep({ view: { measurements: [{ tool: "body", points: [{ body: "t1" }] }] } })),
+    ],
+    [
+      "steps[0].view.measurements: a step has at most 12",
+      lessonText(withStep({ view: { measurements: Array.from({ length: 13 }, () => ({ tool: "body" })) } })),
+    ],
     ["steps[0].question.words", lessonText(withStep({ question: { ...question, words: "" } }))],
     ["steps[0].question.explanation", lessonText(withStep({ question: { ...question, explanation: "" } }))],
     ["give two or more", lessonText(withStep({ question: { ...question, answers: [{ words: "a", right: true }] } }))],

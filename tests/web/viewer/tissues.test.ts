@@ -12,13 +12,23 @@ describe("the tissue of a body", () => {
     ["lungs", "lung-upper-left", "lung"],
     ["discs", "disc-t4", "cartilage"],
     ["liver", "liver", "organ"],
-    ["caval-veins", "inferior-vena-cava", "vessel"],
+    ["caval-veins", "inferior-vena-cava", "vein"],
+    ["airways", "trachea", "airway"],
+    ["oesophagus", "oesophagus", "gut"],
+    ["kidneys", "kidney-left", "organ"],
+    ["scapulae", "scapula-right", "bone"],
+    ["upper-lobes", "lobe-upper-left", "lobe"],
     ["cube", "cube", "other"],
   ])("OfLayer %s AndName %s Is %s", (layer, name, kind) => expect(tissueKind({ layer, name })).toBe(kind));
 
   test("IsSolidInAnOrganAndHollowInAVessel", () => {
     expect(tissueOf({ layer: "heart", name: "heart" }).section).toBeDefined();
-    expect(tissueOf({ layer: "aorta", name: "aorta" }).section).toBeUndefined();
+    expect(tissueOf({ layer: "heart", name: "heart" }).wall).toBeUndefined();
+    for (const name of ["aorta", "inferior-vena-cava", "trachea", "oesophagus", "stomach"]) {
+      const { section, wall = 0 } = tissueOf({ layer: name, name });
+      expect(section, name).toBeDefined();
+      expect(wall, name).toBeGreaterThan(0);
+    }
   });
 
   test("OfBoneIsMattAndThatOfMuscleHasASheen", () => {

@@ -72,13 +72,13 @@ function definitionOf(definitions: Entry["definitions"], number: number): string
 }
 
 const latinSides = {
-  right: { femina: "dextra", genitive: "dextri" },
-  left: { femina: "sinistra", genitive: "sinistri" },
+  right: { femina: "dextra", masculine: "dexter", genitive: "dextri" },
+  left: { femina: "sinistra", masculine: "sinister", genitive: "sinistri" },
 };
 
 /** Returns what stands for a word in braces. Throws RangeError for an unknown word. */
 function wordOf(word: string, number: number, side: string): string {
-  const latin = side === "right" || side === "left" ? latinSides[side] : { femina: "", genitive: "" };
+  const latin = side === "right" || side === "left" ? latinSides[side] : { femina: "", masculine: "", genitive: "" };
   const words: Record<string, string | undefined> = {
     ...latin,
     side: t(side),

@@ -49,6 +49,7 @@ import { Comparisons } from "../session/comparisons";
 import { Exports } from "../session/exports";
 import { ForceQueries } from "../session/force_queries";
 import type { LessonPlace } from "../session/lessons";
+import { measurementsOf } from "../session/measured_links";
 import type { PageView } from "../session/page_view";
 import { Participation, refusalReason } from "../session/participation";
 import { SessionController } from "../session/session_controller";
@@ -91,6 +92,8 @@ export interface PageTarget {
   view: PageView;
   /** The lesson and step that are played. */
   lesson: LessonPlace | undefined;
+  /** The address of the page when it was opened. */
+  address: URL;
   /** Reloads the page with this query string. */
   open(query: string): void;
 }
@@ -359,7 +362,8 @@ export class App {
       filmRow(film),
       animationRow(animation),
     ];
-    const share = new ShareDialog({ controller, report, open, photograph: () => void photograph(), rows });
+    const measured = () => this.tools.measuring.measurements.kept();
+    const share = new ShareDialog({ controller, report, open, photograph: () => void photograph(), rows, measured });
     const { graphs, panel } = drawers(() => this.resize(), this.secondView !== undefined);
     const press = (id: string) => () => document.getElementById(id)?.click();
     const when = () => this.student.inLesson;
@@ -477,11 +481,22 @@ export class App {
     const diagram = this.viewer.show(bodies);
     this.layerStyles.start(bodies, report);
     this.tools.start(bodies, this.tissue, diagram);
+    this.measureAsLinked();
     this.student.start();
     // The first sample of a session that rests may have come before its scene.
     if (this.newestNumbers !== undefined) this.record(this.newestNumbers);
     this.fluoroscopy.start(bodies);
     elementById("loading").hidden = true;
+  }
+
+  /** Measures what the address asks for. */
+  private measureAsLinked(): void {
+    try {
+      this.tools.measuring.measurements.replaceKept(measurementsOf(this.target.address));
+    } catch (error) {
+      // The state of the session, which follows the scene at once, clears the notice.
+      queueMicrotask(() => this.controller.notice.set((error as Error).message));
+    }
   }
 
   /** Shows the layer of a body, if it is hidden. */

@@ -2,8 +2,9 @@ import { create } from "@bufbuild/protobuf";
 import { fields, tissueFields } from "../appearance/fields";
 import type { LayerStyles } from "../appearance/layer_styles";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
-import { type LessonView, LessonViewSchema } from "../gen/phrenic/v1/lesson_pb";
+import { type LessonMeasurement, type LessonView, LessonViewSchema } from "../gen/phrenic/v1/lesson_pb";
 import type { Session } from "../gen/phrenic/v1/session_pb";
+import type { KeptMeasurement } from "../geometry/measuring";
 import { predictionSubjects } from "../graphs/student_graphs";
 import type { SceneNames } from "../session/lessons";
 import type { Signal } from "../state/signal";
@@ -14,18 +15,19 @@ import type { SceneTools } from "./scene_tools";
 /** The fields that a step may show. */
 const colourable = [...fields, ...tissueFields];
 
-/** Returns the names that the lessons of a scene with these layers may use. */
-export function sceneNames(scene: string, layers: string[], predicted: string[]): SceneNames {
+/** Returns the names that the lessons of a scene with these layers, predicted measures and bodies may use. */
+export function sceneNames(scene: string, layers: string[], predicted: string[], bodies: string[] = []): SceneNames {
   const colourings = ["own", ...colourable.map(({ kind }) => kind)];
-  return { scene, cameras: viewNames, cuts: cutKinds, colourings, layers, predicted };
+  return { scene, cameras: viewNames, cuts: cutKinds, colourings, layers, predicted, bodies };
 }
 
 /** Resolves once the session, the layers of its scene and its measures are known. */
 export async function whenShown(
   session: Signal<Session | undefined>,
-  { all }: LayerStyles,
+  styles: LayerStyles,
   first: Promise<Frame>,
 ): Promise<SceneNames> {
+  const { all } = styles;
   const predicted = predictionSubjects(await first).map(({ measure }) => measure);
   return new Promise((resolve) => {
     const check = () => {
@@ -35,6 +37,7 @@ export async function whenShown(
           session.value.scene,
           all.value.map(({ layer }) => layer),
           predicted,
+          styles.bodyNames,
         ),
       );
     };
@@ -45,7 +48,7 @@ export async function whenShown(
 
 /** Applies a step's view; unset fields change nothing. Requires: the names are those of `sceneNames`. */
 export function showLessonView(
-  { camera, cut, colouring, hiddenLayers, pose, cutPosition, cutFlipped, colourTop }: LessonView,
+  { camera, cut, colouring, hiddenLayers, pose, cutPosition, cutFlipped, colourTop, measurements }: LessonView,
   tools: SceneTools,
   layerStyles: LayerStyles,
 ): void {
@@ -61,6 +64,16 @@ export function showLessonView(
     const wanted = !hiddenLayers.includes(layer) && layerStyles.shownByScene(layer);
     if (visible !== wanted) layerStyles.change(layer, { visible: wanted });
   }
+  tools.measuring.measurements.replaceKept(measurements.map(keptOf));
+}
+
+function keptOf({ tool, points }: LessonMeasurement): KeptMeasurement {
+  const places = points.map(({ body, rest }) => ({ body, rest: [rest!.x, rest!.y, rest!.z] as const }));
+  return { tool: tool as KeptMeasurement["tool"], points: places };
+}
+
+function inLesson({ tool, points }: KeptMeasurement) {
+  return { tool: tool as string, points: points.map(({ body, rest: [x, y, z] }) => ({ body, rest: { x, y, z } })) };
 }
 
 /** Returns what is shown now as the view of a step. */
@@ -75,5 +88,6 @@ export function keptLessonView(tools: SceneTools, layerStyles: LayerStyles): Les
     colouring,
     colourTop: tools.coloring.scale.value?.top,
     hiddenLayers: hidden.map(({ layer }) => layer),
+    measurements: tools.measuring.measurements.kept().map(inLesson),
   });
 }

@@ -20,6 +20,8 @@ export class LayerStyles {
   /** Layers that the scene hides and this viewer has not shown yet. */
   private readonly unseen = new Set<string>();
   private hiddenByScene: ReadonlySet<string> = new Set();
+  /** Names of the scene's bodies. */
+  bodyNames: string[] = [];
 
   /** Starts another scene with the styles that it defines; layers of opacity 0 are hidden, and opaque once shown. */
   start(bodies: Body[], report: CompileReport): void {
@@ -28,6 +30,7 @@ export class LayerStyles {
       const style = { layer, title: layerTitle, color, opacity: opacity || 1, visible: opacity > 0 };
       if (!styles.has(layer)) styles.set(layer, style);
     }
+    this.bodyNames = bodies.map(({ name }) => name);
     this.unseen.clear();
     for (const { layer, visible } of styles.values()) if (!visible) this.unseen.add(layer);
     this.hiddenByScene = new Set(this.unseen);

@@ -1,5 +1,14 @@
 import { type Body, type FrameArrays, positionsOf, vertexAt } from "../geometry/bodies";
-import { angleAt, distanceBetween, enclosedVolume, isClosed, surfaceArea } from "../geometry/measuring";
+import {
+  angleAt,
+  distanceBetween,
+  enclosedVolume,
+  isClosed,
+  type KeptMeasurement,
+  mostMeasurements,
+  nearestVertex,
+  surfaceArea,
+} from "../geometry/measuring";
 import type { VertexRef } from "../geometry/vertices";
 import { Placement } from "../gen/phrenic/v1/frames_pb";
 import type { GraphSpec } from "../graphs/catalogue";
@@ -16,7 +25,6 @@ export const pointsOf: Record<MeasureTool, number> = { distance: 2, angle: 3, su
 /** What a measurement gives. */
 export type Quantity = "distance" | "angle" | "area" | "volume";
 
-const most = 12;
 const units: Record<Quantity, [unit: string, factor: number]> = {
   distance: ["mm", 1e3],
   angle: ["°", 180 / Math.PI],
@@ -40,7 +48,7 @@ export interface Measurement {
   /** The picked vertices; for a surface the one that carries the label. */
   points: VertexRef[];
   /** For a surface: indices of the triangles' vertices, and whether they enclose a volume. */
-  surface: { triangles: ArrayLike<number>; closed: boolean } | undefined;
+  surface: { triangles: ArrayLike<number>; closed: boolean; whole: boolean } | undefined;
 }
 
 /** The measurements of a scene, their history, and the points that are picked for the next one. */
@@ -52,6 +60,8 @@ export class Measurements {
   readonly picked = new Signal<VertexRef[]>([]);
   private readonly histories = new Map<Quantity, TimeSeries>();
   private next = 0;
+  /** Ids of the measurements that were added last by `replaceKept`. */
+  private readonly brought = new Set<number>();
 
   /** `partAt` returns the structure at a vertex. */
   constructor(
@@ -72,7 +82,10 @@ export class Measurements {
     if (tool === "surface") return this.measureSurface(this.partAt(ref), ref.vertex);
     const points = [...this.picked.value, ref];
     this.picked.set(points.length < pointsOf[tool] ? points : []);
-    if (points.length < pointsOf[tool]) return;
+    if (points.length === pointsOf[tool]) this.addOfPoints(tool, points);
+  }
+
+  private addOfPoints(tool: MeasureTool, points: VertexRef[]): void {
     const name = [...new Set(points.map((each) => this.partAt(each).name))].join(" – ");
     this.add({ tool, name, points, surface: undefined });
   }
@@ -83,7 +96,7 @@ export class Measurements {
     if (known === undefined || known.triangles.length === 0) return;
     const whole = vertices === undefined;
     const triangles = whole ? known.triangles : trianglesWithin(known.triangles, vertices);
-    const surface = { triangles, closed: whole && isClosed(known.rest, triangles) };
+    const surface = { triangles, closed: whole && isClosed(known.rest, triangles), whole };
     this.add({ tool: "surface", name, points: [{ body, vertex }], surface });
   }
 
@@ -96,6 +109,46 @@ export class Measurements {
   clear(): void {
     this.use(undefined);
     this.all.set([]);
+  }
+
+  /** Returns all measurements by places at rest, for a link or a lesson. */
+  kept(): KeptMeasurement[] {
+    return this.all.value.map(({ tool, points, surface }) => ({
+      tool: surface?.whole === true ? "body" : tool,
+      points: points.flatMap(({ body, vertex }) => {
+        const known = this.bodies().find(({ name }) => name === body);
+        if (known === undefined) return [];
+        const [x, y, z] = known.rest.subarray(3 * vertex, 3 * vertex + 3);
+        return [{ body, rest: [x, y, z] as const }];
+      }),
+    }));
+  }
+
+  /**
+   * Adds kept measurements, in place of those that the last call added. Those of bodies that the scene lacks are left
+   * out. Measurements of the user stay.
+   */
+  replaceKept(kept: KeptMeasurement[]): void {
+    this.all.set(this.all.value.filter(({ id }) => !this.brought.has(id)));
+    this.brought.clear();
+    for (const each of kept) {
+      const first = this.next;
+      this.addKept(each);
+      for (let id = first; id < this.next; id++) this.brought.add(id);
+    }
+  }
+
+  private addKept({ tool, points }: KeptMeasurement): void {
+    const refs = points.flatMap(({ body, rest }) => {
+      const known = this.bodies().find(({ name }) => name === body);
+      const vertex = nearestVertex(known?.rest ?? [], rest);
+      return vertex < 0 ? [] : [{ body, vertex }];
+    });
+    if (refs.length < points.length) return;
+    const [{ body, vertex }] = refs;
+    if (tool === "body") this.measureSurface({ ...this.partAt(refs[0]), body, vertices: undefined }, vertex);
+    else if (tool === "surface") this.measureSurface(this.partAt(refs[0]), vertex);
+    else this.addOfPoints(tool, refs);
   }
 
   /** Returns what a measurement gives in a frame, in SI units [m, rad, m^2, m^3]. */
@@ -146,7 +199,7 @@ export class Measurements {
   }
 
   private add(measurement: Omit<Measurement, "id">): void {
-    this.all.set([...this.all.value, { ...measurement, id: this.next++ }].slice(-most));
+    this.all.set([...this.all.value, { ...measurement, id: this.next++ }].slice(-mostMeasurements));
   }
 }
 

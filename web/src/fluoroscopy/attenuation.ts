@@ -59,7 +59,7 @@ export const materials = {
   sternum: { words: "sternum, as a whole", coefficient: bone(1.25) },
   cartilage: { words: "cartilage, disc", coefficient: linear(perMass.soft, 1.1) },
   muscle: { words: "muscle", coefficient: linear(perMass.soft, 1.05) },
-  organ: { words: "liver, spleen, stomach", coefficient: soft },
+  organ: { words: "liver, spleen, stomach, kidneys", coefficient: soft },
   blood: { words: "heart, vessels: blood", coefficient: linear(perMass.blood, 1.06) },
   fluid: { words: "pleural fluid", coefficient: linear(perMass.water, 1.015) },
   airway: { words: "windpipe: a third wall, two thirds air", coefficient: soft / 3 + (2 * air) / 3 },
@@ -75,7 +75,7 @@ const patterns: [RegExp, Absorption][] = [
   [/effusion|fluid/, "fluid"],
   [/pneumothorax|^air-|bubble/, "air"],
   [/^(heart|aorta)|cava|vein|vessel/, "blood"],
-  [/^(liver|spleen|stomach)/, "organ"],
+  [/^(liver|spleen|stomach|kidney)/, "organ"],
   [/airway|trachea/, "airway"],
   [/sternum|manubrium|xiphoid/, "sternum"],
   [/^rib/, "rib"],
@@ -85,7 +85,8 @@ const patterns: [RegExp, Absorption][] = [
 
 /** Returns how a body absorbs, from its name and its layer; undefined for what has no tissue, such as an inner wall. */
 export function absorptionOf({ name, layer }: Pick<Body, "name" | "layer">): Absorption | undefined {
-  if (layer === "mechanics") return undefined;
+  // The lobes of the generated lungs are the lungs, drawn in parts.
+  if (layer === "mechanics" || name.startsWith("lobe-")) return undefined;
   return (patterns.find(([pattern]) => pattern.test(name)) ?? patterns.find(([pattern]) => pattern.test(layer)))?.[1];
 }
 

@@ -1,6 +1,41 @@
 /** x y z [m]. */
 type Point = readonly [number, number, number];
 
+/** The measurements that links and lessons keep, and the points that each needs; "body" is the surface of a whole body. */
+export const pointsOfKept = { distance: 2, angle: 3, surface: 1, body: 1 } as const;
+
+/** A measurement of vertices, each named by its body and its place at rest [m], so that it is found on another mesh. */
+export interface KeptMeasurement {
+  tool: keyof typeof pointsOfKept;
+  points: { body: string; rest: Point }[];
+}
+
+/** Most measurements of a scene. */
+export const mostMeasurements = 12;
+
+/** Returns what is wrong with a measurement of a file or an address, after its field; undefined if nothing is. */
+export function faultOfMeasurement(
+  tool: string,
+  points: { rest?: { [k in "x" | "y" | "z"]: number } }[],
+): string | undefined {
+  const known = Object.keys(pointsOfKept);
+  if (!known.includes(tool)) return `tool: "${tool}" is not one of ${known.join(", ")}`;
+  const needed = pointsOfKept[tool as KeptMeasurement["tool"]];
+  if (points.length !== needed) return `points: "${tool}" needs ${needed}, not ${points.length}`;
+  const wrong = points.findIndex(({ rest }) => ![rest?.x, rest?.y, rest?.z].every(Number.isFinite));
+  return wrong < 0 ? undefined : `points[${wrong}].rest: give the three numbers of a place`;
+}
+
+/** Returns the vertex nearest to a place; -1 without vertices. `rest`: x y z per vertex [m]. */
+export function nearestVertex(rest: ArrayLike<number>, [x, y, z]: Point): number {
+  let [nearest, least] = [-1, Infinity];
+  for (let i = 0; i < rest.length; i += 3) {
+    const distance = (rest[i] - x) ** 2 + (rest[i + 1] - y) ** 2 + (rest[i + 2] - z) ** 2;
+    if (distance < least) [nearest, least] = [i / 3, distance];
+  }
+  return nearest;
+}
+
 /** Returns the distance of two points [m]. */
 export function distanceBetween(a: Point, b: Point): number {
   return Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);

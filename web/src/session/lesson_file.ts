@@ -3,9 +3,11 @@ import {
   type Lesson,
   LessonSchema,
   type LessonStep,
+  type LessonView,
   type PredictedCurve,
   type Question,
 } from "../gen/phrenic/v1/lesson_pb";
+import { faultOfMeasurement, mostMeasurements } from "../geometry/measuring";
 
 /** Largest size of a lesson's file [bytes], and most steps. */
 const maxBytes = 1_000_000;
@@ -68,7 +70,16 @@ export function faultOfStep({ title, caption, view, question }: LessonStep): str
   const places = pose === undefined ? [] : [pose.eye, pose.target];
   if (places.some((place) => ![place?.x, place?.y, place?.z].every(Number.isFinite)))
     return "view.pose: eye and target need three numbers each";
-  return question && faultOfQuestion(question);
+  return (view && faultOfMeasurements(view)) ?? (question && faultOfQuestion(question));
+}
+
+function faultOfMeasurements({ measurements }: LessonView): string | undefined {
+  if (measurements.length > mostMeasurements) return `view.measurements: a step has at most ${mostMeasurements}`;
+  for (const [i, { tool, points }] of measurements.entries()) {
+    const fault = faultOfMeasurement(tool, points);
+    if (fault !== undefined) return `view.measurements[${i}].${fault}`;
+  }
+  return undefined;
 }
 
 function faultOfQuestion({ words, answers, number, explanation, prediction }: Question): string | undefined {

@@ -46,6 +46,7 @@ export interface SceneNames {
   layers: readonly string[];
   /** Measures whose course can be predicted. */
   predicted: readonly string[];
+  bodies: readonly string[];
 }
 
 /** Throws Error if the lesson is about another scene, or, naming the field, if a view has an unknown name. */
@@ -63,7 +64,8 @@ export function checkLesson({ scene, steps }: Lesson, names: SceneNames): void {
   });
 }
 
-function checkView({ camera, cut, colouring, hiddenLayers }: LessonView, path: string, names: SceneNames): void {
+function checkView(view: LessonView, path: string, names: SceneNames): void {
+  const { camera, cut, colouring, hiddenLayers, measurements } = view;
   const fields: [string, string[], readonly string[]][] = [
     ["camera", [camera], names.cameras],
     ["cut", [cut], names.cuts],
@@ -73,6 +75,13 @@ function checkView({ camera, cut, colouring, hiddenLayers }: LessonView, path: s
   for (const [field, values, known] of fields) {
     const unknown = values.find((value) => value !== "" && !known.includes(value));
     if (unknown !== undefined) throw new Error(`${path}.${field}: "${unknown}" is not one of ${known.join(", ")}`);
+  }
+  for (const [i, { points }] of measurements.entries()) {
+    const k = points.findIndex(({ body }) => !names.bodies.includes(body));
+    if (k >= 0)
+      throw new Error(
+        `${path}.measurements[${i}].points[${k}].body: the scene "${names.scene}" has no body "${points[k].body}"`,
+      );
   }
 }
 

@@ -8,7 +8,7 @@ import { tendonWeights } from "../geometry/tendon";
 import { pointMaterial, setDefine, setOpacity, surfaceMaterial } from "./materials";
 import { addOverlays, type Overlay, type OverlayHost, type OverlayKind } from "./overlays";
 import { ThickLines } from "./thick_lines";
-import { tissueKind, tissueOf } from "./tissues";
+import { tissueOf } from "./tissues";
 import { VertexColors } from "./vertex_colors";
 
 /** Opacity of a faded body. */
@@ -192,7 +192,7 @@ export class BodyView implements OverlayHost {
 
   /** Sets whether a plane clips the scene, so that the inside of closed bodies is seen. */
   setCut(cut: boolean): void {
-    const solid = this.body.opacity === 1 || tissueKind(this.body) === "organ"; // some organs are hidden at first
+    const solid = this.body.opacity === 1 || this.body.opacity === 0; // what is hidden at first is opaque once shown
     const closed = solid && tissueOf(this.body).section !== undefined;
     if (this.mesh !== undefined && closed) setDefine(this.mesh.material, "SECTION", cut);
   }

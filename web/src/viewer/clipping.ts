@@ -1,5 +1,8 @@
 import * as THREE from "three";
+import { lumenInCut, quadIndices, wallsInCut } from "../geometry/cut_walls";
 import { axesOf, type AxisPlane, type SectionPicture } from "../geometry/section";
+import type { BodyView } from "./body_view";
+import { tissueOf } from "./tissues";
 
 /** The anatomical planes, or no clipping. */
 export const cutKinds = ["none", "sagittal", "coronal", "transverse"] as const;
@@ -36,7 +39,7 @@ export function planeCoordinate({ kind, fraction }: Cut, box: THREE.Box3): numbe
 }
 
 /** How far the pictures of a cut lie inside the part that is kept, so that the cut does not clip them [m]. */
-const inset = 3e-4;
+const cutInset = 3e-4;
 
 /** Returns the plane of a cut; undefined without one. */
 export function axisPlaneOf(cut: Cut, box: THREE.Box3): AxisPlane | undefined {
@@ -89,7 +92,7 @@ function pictureMesh(picture: SectionPicture, kept: THREE.Vector3): THREE.Mesh {
   const [a, b] = axesOf(axis);
   const corners = [0, 1, 2, 3].flatMap((corner) => {
     const place = [0, 0, 0];
-    place[axis] = at + inset * Math.sign(kept.getComponent(axis));
+    place[axis] = at + cutInset * Math.sign(kept.getComponent(axis));
     place[a] = low[0] + (corner & 1) * width * step;
     place[b] = low[1] + (corner >> 1) * height * step;
     return place;
@@ -112,4 +115,48 @@ function pictureMesh(picture: SectionPicture, kept: THREE.Vector3): THREE.Mesh {
   const mesh = new THREE.Mesh(geometry, material);
   mesh.frustumCulled = false;
   return mesh;
+}
+
+/** Height of the strips that fill a lumen [m]; less than any wall. */
+const strip = 8e-4;
+
+/** The walls and the lumen of hollow organs where a plane cuts them. */
+export class CutWalls {
+  readonly object = new THREE.Mesh(
+    new THREE.BufferGeometry(),
+    new THREE.MeshBasicMaterial({ vertexColors: true, side: THREE.DoubleSide }),
+  );
+
+  constructor() {
+    this.object.frustumCulled = false;
+    this.object.visible = false;
+  }
+
+  /** Shows walls and lumina of bodies in the plane, whose side of `kept` is drawn; none without a plane. */
+  show(views: readonly BodyView[], plane: AxisPlane | undefined, kept: THREE.Vector3 | undefined): void {
+    const corners: number[] = [];
+    const colors: number[] = [];
+    const add = (quads: number[], color: string) => {
+      const { r, g, b } = new THREE.Color(color);
+      for (let i = 0; i < quads.length; i += 3) {
+        corners.push(quads[i], quads[i + 1], quads[i + 2]);
+        colors.push(r, g, b);
+      }
+    };
+    for (const { body, group, isFaded, positions } of plane === undefined ? [] : views) {
+      const { wall, section = body.color } = tissueOf(body);
+      if (wall === undefined || !group.visible || isFaded) continue;
+      const shift = cutInset * Math.sign(kept!.getComponent(plane!.axis));
+      add(lumenInCut(positions.array, body.triangles, plane!, strip, 2 * shift), section);
+      add(wallsInCut(positions.array, body.triangles, plane!, wall, shift), body.color);
+    }
+    this.object.visible = corners.length > 0;
+    if (!this.object.visible) return;
+    const index = Array.from({ length: corners.length / 2 }, (_, i) => 4 * Math.floor(i / 6) + quadIndices[i % 6]);
+    this.object.geometry.dispose();
+    this.object.geometry = new THREE.BufferGeometry()
+      .setAttribute("position", new THREE.Float32BufferAttribute(corners, 3))
+      .setAttribute("color", new THREE.Float32BufferAttribute(colors, 3))
+      .setIndex(index);
+  }
 }

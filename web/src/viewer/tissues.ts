@@ -15,7 +15,12 @@ export interface Tissue {
   scatter: number;
   /** Colour of a cut through the tissue; undefined for tissue that is no closed body. */
   section?: string;
+  /** Thickness of the wall of a hollow organ, whose `section` is that of its lumen [m]. */
+  wall?: number;
 }
+
+const hollow = { roughness: 0.5, sheen: 0.1, fibres: 0, spots: 0.05, spotSize: 0.008, scatter: 0.1 };
+const lung = { roughness: 0.8, sheen: 0.1, fibres: 0, spots: 0.2, spotSize: 0.006, scatter: 0.4 };
 
 const kinds = {
   muscle: { roughness: 0.6, sheen: 0.14, fibres: 0.8, spots: 0.1, spotSize: 0.012, scatter: 0.1, section: "#7d2a24" },
@@ -30,8 +35,12 @@ const kinds = {
     section: "#aab5ae",
   },
   organ: { roughness: 0.55, sheen: 0.12, fibres: 0, spots: 0.12, spotSize: 0.008, scatter: 0.1, section: "#63332a" },
-  vessel: { roughness: 0.5, sheen: 0.1, fibres: 0, spots: 0.05, spotSize: 0.008, scatter: 0.1 },
-  lung: { roughness: 0.8, sheen: 0.1, fibres: 0, spots: 0.2, spotSize: 0.006, scatter: 0.4 },
+  artery: { ...hollow, section: "#4f0f10", wall: 0.002 },
+  vein: { ...hollow, section: "#26304f", wall: 0.0013 },
+  airway: { ...hollow, section: "#17191c", wall: 0.0018 },
+  gut: { ...hollow, section: "#6e4138", wall: 0.003 },
+  lung,
+  lobe: { ...lung, section: "#b98079" },
   other: { roughness: 0.6, sheen: 0.05, fibres: 0, spots: 0, spotSize: 1, scatter: 0 },
 } satisfies Record<string, Tissue>;
 
@@ -40,10 +49,14 @@ export type TissueKind = keyof typeof kinds;
 
 const patterns: [RegExp, TissueKind][] = [
   [/cartilage|^disc/, "cartilage"],
-  [/^(heart|liver|spleen)/, "organ"],
-  [/aorta|cava|oesophagus|airways|stomach/, "vessel"],
+  [/^(heart|liver|spleen|kidney)/, "organ"],
+  [/aorta/, "artery"],
+  [/cava/, "vein"],
+  [/airways|trachea/, "airway"],
+  [/oesophagus|stomach/, "gut"],
+  [/^lobe-|^fissure-/, "lobe"],
   [/diaphragm|muscle|intercostal/, "muscle"],
-  [/rib|sternum|manubrium|xiphoid|spine|vertebra|bone/, "bone"],
+  [/rib|sternum|manubrium|xiphoid|spine|vertebra|bone|clavicle|scapula/, "bone"],
   [/lung|lobe/, "lung"],
 ];
 

@@ -10,7 +10,7 @@ import { AdaptiveResolution } from "./adaptive_resolution";
 import { BodyView } from "./body_view";
 import { CameraRig, type Insets, type ViewOrientation } from "./camera_rig";
 import { enablePicking } from "./click_picking";
-import { axisPlaneOf, clippingPlane, type Cut, CutPictures, planeCoordinate } from "./clipping";
+import { axisPlaneOf, clippingPlane, type Cut, CutPictures, CutWalls, planeCoordinate } from "./clipping";
 import { TranslucentSurfaces } from "./ghost";
 import { StudioLights } from "./lights";
 import { Markers } from "./markers";
@@ -65,6 +65,7 @@ export class Viewer {
   private readonly comparedSurface = new TranslucentSurfaces({ color: "#ffd166", emissive: "#7a5a12" });
   private readonly markers = new Markers();
   private readonly cutPictures = new CutPictures();
+  private readonly cutWalls = new CutWalls();
   private readonly lights: StudioLights;
   private readonly quality: QualityChooser;
   /** True if the bodies have no ambient occlusion yet. */
@@ -101,7 +102,8 @@ export class Viewer {
     this.quality = new QualityChooser(this.software);
     this.lights = new StudioLights(this.scene, this.rig.camera, this.renderer);
     this.lights.setQuality(this.quality.quality);
-    this.scene.add(this.ghost.object, this.comparedSurface.object, this.markers.object, this.cutPictures.object);
+    const { ghost, comparedSurface, markers, cutPictures, cutWalls } = this;
+    this.scene.add(...[ghost, comparedSurface, markers, cutPictures, cutWalls].map(({ object }) => object));
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.renderer.setAnimationLoop((now) => this.onAnimationFrame(now));
   }
@@ -445,6 +447,7 @@ export class Viewer {
     const orientation = this.rig.orientation();
     this.markers.scale(markerSize / orientation.pixelsPerMetre);
     this.lights.follow(this.rig.sceneCenter, extent);
+    this.cutWalls.show(this.views, this.cutPlane, this.currentPlane()?.normal);
     if (!hidden) this.renderer.render(this.scene, this.rig.camera);
     this.drawn++;
     if (frame !== undefined && this.firstDrawTime < 0) this.firstDrawTime = performance.now();

@@ -1,5 +1,7 @@
 import { make } from "../../dom/elements";
 import type { CompileReport } from "../../gen/phrenic/v1/report_pb";
+import type { KeptMeasurement } from "../../geometry/measuring";
+import { withMeasurements } from "../../session/measured_links";
 import { withPageView } from "../../session/page_view";
 import { permalinkOf } from "../../session/permalink";
 import type { SessionController } from "../../session/session_controller";
@@ -13,6 +15,8 @@ export interface Sharing {
   /** Opens the page with this query string. */
   open(query: string): void;
   photograph(): void;
+  /** Returns what is measured, which the links hold. */
+  measured(): KeptMeasurement[];
   /** Rows at the head of the list of copies. */
   rows: HTMLElement[];
 }
@@ -35,7 +39,7 @@ export class ShareDialog {
       this.session.row,
       this.forClass.row,
       this.permalink.row,
-      make("p", { className: "faint" }, rerunWords),
+      make("p", { className: "faint" }, rerunWords, " ", t("The links above hold what is measured.")),
       this.frame.row,
       make("p", { className: "faint" }, t("Pages of other origins need phrenicd --allow-origin.")),
       make("h2", {}, t("Copy")),
@@ -48,11 +52,15 @@ export class ShareDialog {
     const { controller, report } = this.sharing;
     const session = controller.session.value;
     const base = `${location.origin}${location.pathname}`;
-    this.session.entry.value = `${base}?${new URLSearchParams({ session: controller.sessionId })}`;
+    const measured = this.sharing.measured();
+    const here = `?${new URLSearchParams({ session: controller.sessionId })}`;
+    this.session.entry.value = base + withMeasurements(here, measured);
     this.forClass.entry.value = base + withPageView(new URL(this.session.entry.value).search, "student");
     const embedded = `${base}?${new URLSearchParams({ session: controller.sessionId })}&amp;embed`;
     this.frame.entry.value = `<iframe src="${embedded}" width="720" height="540" title="Phrenic"></iframe>`;
-    if (session !== undefined) this.permalink.entry.value = base + permalinkOf(session, report.value?.sceneHash ?? "");
+    const hash = report.value?.sceneHash ?? "";
+    if (session !== undefined)
+      this.permalink.entry.value = base + withMeasurements(permalinkOf(session, hash), measured);
     this.element.showModal();
   }
 

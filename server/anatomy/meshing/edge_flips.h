@@ -1,6 +1,6 @@
 // Intrinsic Delaunay triangulation of a surface by edge flips.
-#ifndef PHRENIC_SERVER_ANATOMY_EDGE_FLIPS_H_
-#define PHRENIC_SERVER_ANATOMY_EDGE_FLIPS_H_
+#ifndef PHRENIC_SERVER_ANATOMY_MESHING_EDGE_FLIPS_H_
+#define PHRENIC_SERVER_ANATOMY_MESHING_EDGE_FLIPS_H_
 
 #include <Eigen/Core>
 #include <vector>
@@ -20,4 +20,4 @@ void FlipToDelaunay(const std::vector<Eigen::Vector3d>& points, Triangles& trian
 
 }  // namespace phrenic::anatomy
 
-#endif  // PHRENIC_SERVER_ANATOMY_EDGE_FLIPS_H_
+#endif  // PHRENIC_SERVER_ANATOMY_MESHING_EDGE_FLIPS_H_

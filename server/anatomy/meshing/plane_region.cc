@@ -1,4 +1,4 @@
-#include "server/anatomy/plane_region.h"
+#include "server/anatomy/meshing/plane_region.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // Implicit functions: fields that are negative inside a shape, their blending, and primitives. Pure functions,
 // thread-safe.
-#ifndef PHRENIC_SERVER_ANATOMY_FIELD_H_
-#define PHRENIC_SERVER_ANATOMY_FIELD_H_
+#ifndef PHRENIC_SERVER_ANATOMY_MESHING_FIELD_H_
+#define PHRENIC_SERVER_ANATOMY_MESHING_FIELD_H_
 
 #include <Eigen/Core>
 #include <functional>
@@ -25,4 +25,4 @@ double Ellipsoid(const Eigen::Vector3d& x, const Eigen::Vector3d& centre, const 
 
 }  // namespace phrenic::anatomy
 
-#endif  // PHRENIC_SERVER_ANATOMY_FIELD_H_
+#endif  // PHRENIC_SERVER_ANATOMY_MESHING_FIELD_H_

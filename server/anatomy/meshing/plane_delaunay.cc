@@ -1,4 +1,4 @@
-#include "server/anatomy/plane_delaunay.h"
+#include "server/anatomy/meshing/plane_delaunay.h"
 
 #include <boost/polygon/voronoi.hpp>
 #include <cmath>

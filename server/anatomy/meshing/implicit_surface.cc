@@ -1,4 +1,4 @@
-#include "server/anatomy/implicit_surface.h"
+#include "server/anatomy/meshing/implicit_surface.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "server/anatomy/remesh.h"
+#include "server/anatomy/meshing/remesh.h"
 #include "server/mesh/renumber.h"
 #include "server/mesh/topology.h"
 

@@ -1,6 +1,6 @@
 // Smoothstep, which blends one thickness or angle into another.
-#ifndef PHRENIC_SERVER_ANATOMY_SMOOTH_H_
-#define PHRENIC_SERVER_ANATOMY_SMOOTH_H_
+#ifndef PHRENIC_SERVER_ANATOMY_MESHING_SMOOTH_H_
+#define PHRENIC_SERVER_ANATOMY_MESHING_SMOOTH_H_
 
 #include <algorithm>
 
@@ -14,4 +14,4 @@ inline double Smooth(double t) {
 
 }  // namespace phrenic::anatomy
 
-#endif  // PHRENIC_SERVER_ANATOMY_SMOOTH_H_
+#endif  // PHRENIC_SERVER_ANATOMY_MESHING_SMOOTH_H_

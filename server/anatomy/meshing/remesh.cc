@@ -1,4 +1,4 @@
-#include "server/anatomy/remesh.h"
+#include "server/anatomy/meshing/remesh.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "server/anatomy/edge_collapse.h"
-#include "server/anatomy/edge_flips.h"
+#include "server/anatomy/meshing/edge_collapse.h"
+#include "server/anatomy/meshing/edge_flips.h"
 
 namespace phrenic::anatomy {
 namespace {

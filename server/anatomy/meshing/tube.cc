@@ -1,4 +1,4 @@
-#include "server/anatomy/tube.h"
+#include "server/anatomy/meshing/tube.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "server/anatomy/field.h"
+#include "server/anatomy/meshing/field.h"
 
 #include <algorithm>
 #include <cmath>

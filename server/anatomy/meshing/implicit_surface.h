@@ -1,11 +1,11 @@
 // Closed triangle surfaces of implicit functions: the zero level set of a field that is negative inside. Lengths are in
 // the caller's unit, here millimetres. Thread-safe.
-#ifndef PHRENIC_SERVER_ANATOMY_IMPLICIT_SURFACE_H_
-#define PHRENIC_SERVER_ANATOMY_IMPLICIT_SURFACE_H_
+#ifndef PHRENIC_SERVER_ANATOMY_MESHING_IMPLICIT_SURFACE_H_
+#define PHRENIC_SERVER_ANATOMY_MESHING_IMPLICIT_SURFACE_H_
 
 #include <Eigen/Core>
 
-#include "server/anatomy/field.h"
+#include "server/anatomy/meshing/field.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic::anatomy {
@@ -25,4 +25,4 @@ Mesh ImplicitSurface(const Field& field, const Box& box, double edge_length, dou
 
 }  // namespace phrenic::anatomy
 
-#endif  // PHRENIC_SERVER_ANATOMY_IMPLICIT_SURFACE_H_
+#endif  // PHRENIC_SERVER_ANATOMY_MESHING_IMPLICIT_SURFACE_H_

@@ -1,4 +1,4 @@
-#include "server/anatomy/edge_collapse.h"
+#include "server/anatomy/meshing/edge_collapse.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

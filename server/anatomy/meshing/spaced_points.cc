@@ -1,4 +1,4 @@
-#include "server/anatomy/spaced_points.h"
+#include "server/anatomy/meshing/spaced_points.h"
 
 #include <algorithm>
 #include <cmath>

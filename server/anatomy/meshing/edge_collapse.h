@@ -1,6 +1,6 @@
 // Coarsens a closed triangle surface by edge collapse.
-#ifndef PHRENIC_SERVER_ANATOMY_EDGE_COLLAPSE_H_
-#define PHRENIC_SERVER_ANATOMY_EDGE_COLLAPSE_H_
+#ifndef PHRENIC_SERVER_ANATOMY_MESHING_EDGE_COLLAPSE_H_
+#define PHRENIC_SERVER_ANATOMY_MESHING_EDGE_COLLAPSE_H_
 
 #include <Eigen/Core>
 #include <vector>
@@ -16,4 +16,4 @@ void CollapseShortEdges(double shortest, double longest, std::vector<Eigen::Vect
 
 }  // namespace phrenic::anatomy
 
-#endif  // PHRENIC_SERVER_ANATOMY_EDGE_COLLAPSE_H_
+#endif  // PHRENIC_SERVER_ANATOMY_MESHING_EDGE_COLLAPSE_H_

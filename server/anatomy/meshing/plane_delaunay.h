@@ -1,6 +1,6 @@
 // Delaunay triangulation of points in the plane, the dual of Boost.Polygon's exact Voronoi diagram.
-#ifndef PHRENIC_SERVER_ANATOMY_PLANE_DELAUNAY_H_
-#define PHRENIC_SERVER_ANATOMY_PLANE_DELAUNAY_H_
+#ifndef PHRENIC_SERVER_ANATOMY_MESHING_PLANE_DELAUNAY_H_
+#define PHRENIC_SERVER_ANATOMY_MESHING_PLANE_DELAUNAY_H_
 
 #include <Eigen/Core>
 #include <vector>
@@ -15,4 +15,4 @@ Triangles PlaneDelaunay(const std::vector<Eigen::Vector2d>& points);
 
 }  // namespace phrenic::anatomy
 
-#endif  // PHRENIC_SERVER_ANATOMY_PLANE_DELAUNAY_H_
+#endif  // PHRENIC_SERVER_ANATOMY_MESHING_PLANE_DELAUNAY_H_

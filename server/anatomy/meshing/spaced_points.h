@@ -1,6 +1,6 @@
 // Dart throwing: a set of points with a minimum distance (in a hash grid), and the quasi-random sequence of candidates.
-#ifndef PHRENIC_SERVER_ANATOMY_SPACED_POINTS_H_
-#define PHRENIC_SERVER_ANATOMY_SPACED_POINTS_H_
+#ifndef PHRENIC_SERVER_ANATOMY_MESHING_SPACED_POINTS_H_
+#define PHRENIC_SERVER_ANATOMY_MESHING_SPACED_POINTS_H_
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -38,4 +38,4 @@ class SpacedPoints {
 
 }  // namespace phrenic::anatomy
 
-#endif  // PHRENIC_SERVER_ANATOMY_SPACED_POINTS_H_
+#endif  // PHRENIC_SERVER_ANATOMY_MESHING_SPACED_POINTS_H_

@@ -1,4 +1,4 @@
-#include "server/anatomy/edge_flips.h"
+#include "server/anatomy/meshing/edge_flips.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

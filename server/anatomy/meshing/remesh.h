@@ -1,8 +1,8 @@
 // Isotropic remeshing of the closed surface of an implicit function.
-#ifndef PHRENIC_SERVER_ANATOMY_REMESH_H_
-#define PHRENIC_SERVER_ANATOMY_REMESH_H_
+#ifndef PHRENIC_SERVER_ANATOMY_MESHING_REMESH_H_
+#define PHRENIC_SERVER_ANATOMY_MESHING_REMESH_H_
 
-#include "server/anatomy/field.h"
+#include "server/anatomy/meshing/field.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic::anatomy {
@@ -14,4 +14,4 @@ Mesh Remesh(const Field& field, const Mesh& fine, double edge_length);
 
 }  // namespace phrenic::anatomy
 
-#endif  // PHRENIC_SERVER_ANATOMY_REMESH_H_
+#endif  // PHRENIC_SERVER_ANATOMY_MESHING_REMESH_H_

@@ -1,7 +1,7 @@
 // Closed tubes of varying flattened cross-section along a smooth curve: ribs, cartilages and vessels. Lengths in one
 // unit, here millimetres. Thread-safe.
-#ifndef PHRENIC_SERVER_ANATOMY_TUBE_H_
-#define PHRENIC_SERVER_ANATOMY_TUBE_H_
+#ifndef PHRENIC_SERVER_ANATOMY_MESHING_TUBE_H_
+#define PHRENIC_SERVER_ANATOMY_MESHING_TUBE_H_
 
 #include <Eigen/Core>
 #include <functional>
@@ -56,4 +56,4 @@ Mesh Mirrored(Mesh mesh);
 
 }  // namespace phrenic::anatomy
 
-#endif  // PHRENIC_SERVER_ANATOMY_TUBE_H_
+#endif  // PHRENIC_SERVER_ANATOMY_MESHING_TUBE_H_

@@ -1,6 +1,6 @@
 // A region of the plane bounded by closed polygons, with a fast point-in-polygon test.
-#ifndef PHRENIC_SERVER_ANATOMY_PLANE_REGION_H_
-#define PHRENIC_SERVER_ANATOMY_PLANE_REGION_H_
+#ifndef PHRENIC_SERVER_ANATOMY_MESHING_PLANE_REGION_H_
+#define PHRENIC_SERVER_ANATOMY_MESHING_PLANE_REGION_H_
 
 #include <Eigen/Core>
 #include <utility>
@@ -29,4 +29,4 @@ class PlaneRegion {
 
 }  // namespace phrenic::anatomy
 
-#endif  // PHRENIC_SERVER_ANATOMY_PLANE_REGION_H_
+#endif  // PHRENIC_SERVER_ANATOMY_MESHING_PLANE_REGION_H_
