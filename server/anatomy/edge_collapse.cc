@@ -3,10 +3,17 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <tuple>
+
+#include "absl/container/inlined_vector.h"
 
 namespace phrenic::anatomy {
 namespace {
+
+// The vertices or triangles at a vertex; more than so many are on the heap.
+using Fan = absl::InlinedVector<int, 10>;
+using Around = absl::InlinedVector<int, 24>;
 
 class Collapser {
  public:
@@ -15,30 +22,28 @@ class Collapser {
         points_(points),
         triangles_(triangles),
         fans_(points.size()),
-        alive_(triangles.cols(), true) {
+        alive_(static_cast<size_t>(triangles.cols()), true),
+        changed_(points.size(), true) {
     for (int t = 0; t < static_cast<int>(triangles.cols()); ++t) {
       for (int k = 0; k < 3; ++k) fans_[triangles(k, t)].push_back(t);
     }
+    for (int i = 0; i < static_cast<int>(points.size()); ++i) changes_.push_back(i);
   }
 
   // Collapses short edges, shortest first, at most one in each neighbourhood. Returns false if none could be collapsed.
+  // An edge that no sweep collapsed is not tried again until a vertex of it has changed: its answer is the same.
   bool Sweep(double shortest) {
-    std::vector<std::tuple<double, int, int>> edges;
-    for (int t = 0; t < static_cast<int>(triangles_.cols()); ++t) {
-      if (!alive_[t]) continue;
-      for (int k = 0; k < 3; ++k) {
-        const int a = triangles_(k, t), b = triangles_((k + 1) % 3, t);
-        const double length = (points_[a] - points_[b]).norm();
-        if (a < b && length < shortest) edges.emplace_back(length, a, b);
-      }
-    }
-    std::sort(edges.begin(), edges.end());
+    const std::vector<Edge> edges = ShortEdges(shortest);
+    for (const int i : changes_) changed_[i] = false;
+    changes_.clear();
     bool collapsed = false;
-    std::vector<bool> touched(points_.size(), false);
+    std::vector<bool>& touched = touched_;
+    touched.assign(points_.size(), false);
     for (const auto& [length, a, b] : edges) {
       if (touched[a] || touched[b] || !CanCollapse(a, b)) continue;
-      for (const int n : Around(a)) touched[n] = true;
-      for (const int n : Around(b)) touched[n] = true;
+      for (const int n : VerticesAround(a)) touched[n] = true;
+      for (const int n : VerticesAround(b)) touched[n] = true;
+      MarkChanged(a, b);
       Collapse(a, b);
       collapsed = true;
     }
@@ -65,8 +70,46 @@ class Collapser {
   }
 
  private:
-  std::vector<int> Around(int vertex) const {
-    std::vector<int> around;
+  using Edge = std::tuple<double, int, int>;
+
+  // Returns the edges shorter than `shortest` with a changed vertex, shortest first, each once.
+  std::vector<Edge> ShortEdges(double shortest) const {
+    std::vector<Edge> edges;
+    for (const int vertex : changes_) {
+      for (const int t : fans_[vertex]) {
+        for (int k = 0; k < 3; ++k) {
+          const int a = triangles_(k, t), b = triangles_((k + 1) % 3, t);
+          // Of two changed vertices the first lists the edge.
+          if (a >= b || (a != vertex && (b != vertex || changed_[a]))) continue;
+          const double length = (points_[a] - points_[b]).norm();
+          if (length < shortest) edges.emplace_back(length, a, b);
+        }
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    return edges;
+  }
+
+  void MarkChanged(int vertex) {
+    if (changed_[vertex]) return;
+    changed_[vertex] = true;
+    changes_.push_back(vertex);
+  }
+
+  // Marks every vertex for which the answer of CanCollapse may change when a and b become one: those around a and b,
+  // and those around the two vertices that lose a triangle.
+  void MarkChanged(int a, int b) {
+    const Around around_a = VerticesAround(a), around_b = VerticesAround(b);
+    for (const int n : around_a) MarkChanged(n);
+    for (const int n : around_b) MarkChanged(n);
+    for (const int n : around_a) {
+      if (!std::binary_search(around_b.begin(), around_b.end(), n)) continue;
+      for (const int m : VerticesAround(n)) MarkChanged(m);
+    }
+  }
+
+  Around VerticesAround(int vertex) const {
+    Around around;
     for (const int t : fans_[vertex]) {
       for (int k = 0; k < 3; ++k) {
         if (triangles_(k, t) != vertex) around.push_back(triangles_(k, t));
@@ -81,9 +124,9 @@ class Collapser {
 
   // Checks the link condition, the length limit and the normals.
   bool CanCollapse(int a, int b) const {
-    const std::vector<int> around_a = Around(a), around_b = Around(b);
+    const Around around_a = VerticesAround(a), around_b = VerticesAround(b);
     if (!std::binary_search(around_a.begin(), around_a.end(), b)) return false;
-    std::vector<int> shared;
+    Around shared;
     std::set_intersection(around_a.begin(), around_a.end(), around_b.begin(), around_b.end(),
                           std::back_inserter(shared));
     if (shared.size() != 2 || fans_[shared[0]].size() <= 3 || fans_[shared[1]].size() <= 3) return false;
@@ -112,10 +155,13 @@ class Collapser {
 
   void Collapse(int a, int b) {
     points_[a] = (points_[a] + points_[b]) / 2;
-    for (const int t : std::vector<int>(fans_[b])) {
+    for (const int t : Fan(fans_[b])) {
       if (Has(t, a)) {
         alive_[t] = false;
-        for (int k = 0; k < 3; ++k) std::erase(fans_[triangles_(k, t)], t);
+        for (int k = 0; k < 3; ++k) {
+          Fan& fan = fans_[triangles_(k, t)];
+          fan.erase(std::remove(fan.begin(), fan.end(), t), fan.end());
+        }
         continue;
       }
       for (int k = 0; k < 3; ++k) {
@@ -129,8 +175,11 @@ class Collapser {
   double longest_;
   std::vector<Eigen::Vector3d>& points_;
   Triangles& triangles_;
-  std::vector<std::vector<int>> fans_;  // the triangles at each vertex
+  std::vector<Fan> fans_;  // the triangles at each vertex
   std::vector<bool> alive_;
+  std::vector<bool> changed_;  // since the sweep before began
+  std::vector<int> changes_;   // the vertices that changed_ names
+  std::vector<bool> touched_;  // in this sweep
 };
 
 }  // namespace
