@@ -147,12 +147,12 @@ TEST(ForEachPart, LeavesOutWhatFollowsAStop) {
   const int before = CompileThreads();
   SetCompileThreads(1);
   int asked = 0, done = 0;
-  const StopCheck stop([&] { return ++asked == 1; }, 0, "");
-  ForEachPart(
-      1000, [&](std::int64_t) { ++done; }, stop);
-  EXPECT_EQ(done, 0);
-  ForEachPart(1000, [&](std::int64_t) { ++done; });
-  EXPECT_EQ(done, 1000);
+  ForEachPartUntil(
+      1000, [&] { return ++asked > 3; }, [&](std::int64_t) { ++done; });
+  EXPECT_EQ(done, 3);
+  ForEachPartUntil(
+      1000, [] { return false; }, [&](std::int64_t) { ++done; });
+  EXPECT_EQ(done, 1003);
   SetCompileThreads(before);
 }
 

@@ -22,11 +22,17 @@ void SetCompileThreads(int threads) { Most() = std::clamp(threads, 1, kMostThrea
 
 int CompileThreads() { return Most(); }
 
-void ForEachPart(std::int64_t parts, absl::FunctionRef<void(std::int64_t)> work, const StopCheck& stop) {
+void ForEachPart(std::int64_t parts, absl::FunctionRef<void(std::int64_t)> work) {
+  ForEachPartUntil(
+      parts, [] { return false; }, work);
+}
+
+void ForEachPartUntil(std::int64_t parts, absl::FunctionRef<bool()> stopped,
+                      absl::FunctionRef<void(std::int64_t)> work) {
   std::atomic<std::int64_t> next = 0;
   const auto take = [&](bool is_caller) {
     for (std::int64_t part = next++; part < parts; part = next++) {
-      if (is_caller && stop.Stopped()) {
+      if (is_caller && stopped()) {
         next = parts;
         break;
       }

@@ -6,7 +6,6 @@
 #include <cstdint>
 
 #include "absl/functional/function_ref.h"
-#include "server/mechanics/stop_check.h"
 
 namespace phrenic {
 
@@ -16,10 +15,13 @@ void SetCompileThreads(int threads);
 int CompileThreads();
 
 // Calls work(part) once for each part from 0 to parts - 1, in any order, on the caller and on threads that end before
-// it returns. A caller whose parts write to places of their own gets the same bits from any number of threads. Once
-// `stop` is stopped, which the caller's thread asks before each of its parts, the other parts are left out.
+// it returns. A caller whose parts write to places of their own gets the same bits from any number of threads.
 // Thread-safe.
-void ForEachPart(std::int64_t parts, absl::FunctionRef<void(std::int64_t)> work, const StopCheck& stop = StopCheck());
+void ForEachPart(std::int64_t parts, absl::FunctionRef<void(std::int64_t)> work);
+// The same, but leaves out the parts that have not begun once stopped() is true, which the caller's thread alone asks,
+// before each of its parts.
+void ForEachPartUntil(std::int64_t parts, absl::FunctionRef<bool()> stopped,
+                      absl::FunctionRef<void(std::int64_t)> work);
 
 // A range of vertices, or of other items that take some microseconds each.
 struct PartRange {

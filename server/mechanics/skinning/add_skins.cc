@@ -48,8 +48,9 @@ std::vector<SkinWeight> Joined(const std::vector<std::vector<SkinWeight>>& parts
 template <typename Append>
 std::vector<SkinWeight> WeighAll(Eigen::Index vertices, const StopCheck& stop, const Append& append) {
   std::vector<std::vector<SkinWeight>> parts(static_cast<size_t>(CountParts(vertices)));
-  ForEachPart(
-      std::ssize(parts), [&](std::int64_t part) { append(PartOf(vertices, part), parts[part]); }, stop);
+  ForEachPartUntil(
+      std::ssize(parts), [&stop] { return stop.Stopped(); },
+      [&](std::int64_t part) { append(PartOf(vertices, part), parts[part]); });
   return Joined(parts);
 }
 
