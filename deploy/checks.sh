@@ -203,7 +203,7 @@ stage_format() {
 }
 
 check_shellcheck() {
-  (cd "$root" && shellcheck -x deploy/run deploy/test deploy/report deploy/faults deploy/cluster deploy/package deploy/guard deploy/*.sh \
+  (cd "$root" && shellcheck -x deploy/run deploy/test deploy/starts deploy/report deploy/faults deploy/cluster deploy/package deploy/guard deploy/*.sh \
     client/examples/*.sh tests/client/slurm/* .ci/run tests/deploy/*.sh)
 }
 

@@ -49,6 +49,24 @@ class CageSection {
   double half_width_, half_depth_, centre_, column_;
 };
 
+// The section that a field has used last: grids and gradients ask for many points of one height. A field has one per
+// thread. Not thread-safe.
+class LastCageSection {
+ public:
+  // Returns CageSection(z, inset), valid until the next call.
+  const CageSection& At(double z, double inset) {
+    if (z != z_ || inset != inset_) {
+      section_ = CageSection(z, inset);
+      z_ = z, inset_ = inset;
+    }
+    return section_;
+  }
+
+ private:
+  double z_ = 0, inset_ = 0;
+  CageSection section_{0, 0};
+};
+
 // Returns y of the middle of the sternum at height z [mm].
 double SternumLine(double z);
 

@@ -20,7 +20,8 @@ constexpr double kTop = 393;        // z of the apex [mm]
 // Inside the chest wall, which narrows to the pleural cupola.
 double InsideCage(const Eigen::Vector3d& x) {
   const double pleura = kPleura + 4 * std::clamp((x.z() - 315) / 40, 0.0, 1.0);  // wider where the first ribs lie flat
-  const Eigen::Vector2d q = CageSection(std::min(x.z(), kTop + 2), pleura).DiscCoordinates(x.head<2>());
+  thread_local LastCageSection last;
+  const Eigen::Vector2d q = last.At(std::min(x.z(), kTop + 2), pleura).DiscCoordinates(x.head<2>());
   const double narrowing = std::clamp((kTop - x.z()) / 120, 0.3, 1.0);
   return SmoothMax((q.norm() - 1) * 80 * narrowing, x.z() - kTop, 14);
 }
@@ -30,7 +31,8 @@ double AboveDiaphragm(const Eigen::Vector3d& x) {
   constexpr double kStep = 0.01, kRadius = 105, kRecess = 0.93;
   if (x.z() > 260) return 230 - x.z();
   const double z = std::clamp(x.z(), 100.0, 230.0);
-  const Eigen::Vector2d q = CageSection(z, kDiaphragmInset).DiscCoordinates(x.head<2>());
+  thread_local LastCageSection last;
+  const Eigen::Vector2d q = last.At(z, kDiaphragmInset).DiscCoordinates(x.head<2>());
   const double r = std::clamp(q.norm(), kStep, 1 - 2 * kStep);
   const Eigen::Vector2d unit = q / std::max(q.norm(), 1e-9);
   const double slope = (DomeHeight((r - kStep) * unit) - DomeHeight((r + kStep) * unit)) / (2 * kStep * kRadius);

@@ -172,11 +172,12 @@ Sheet MeshSheet(const SheetDomain& domain) {
   const PlaneRegion region(boundary);
   Fill(domain, region, sheet);
   sheet.triangles = Inside(region, sheet.plane, PlaneDelaunay(sheet.plane));
+  EdgeFlips flips(sheet.triangles);
   for (int round = 0; round < kRounds; ++round) {
-    FlipToDelaunay(sheet.plane, sheet.points, sheet.triangles);
+    flips.ToDelaunay(sheet.plane, sheet.points);
     Relax(domain, first_free, sheet);
   }
-  FlipToDelaunay(sheet.plane, sheet.points, sheet.triangles);
+  flips.ToDelaunay(sheet.plane, sheet.points);
   return InCacheOrder(sheet);
 }
 

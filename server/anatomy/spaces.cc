@@ -18,13 +18,15 @@ constexpr double kCageRadius = 105;  // turns disc coordinates into lengths [mm]
 double WithinCage(const Eigen::Vector3d& x, double inset) {
   // Disc coordinates are not lengths: across the cage the unit is its half width, front to back its half depth.
   constexpr double kHalfDepth = 80;
-  return (CageSection(x.z(), inset).DiscCoordinates(x.head<2>()).norm() - 1) * kHalfDepth;
+  thread_local LastCageSection last;
+  return (last.At(x.z(), inset).DiscCoordinates(x.head<2>()).norm() - 1) * kHalfDepth;
 }
 
 double AboveDome(const Eigen::Vector3d& x) {
   constexpr double kStep = 0.01, kHighest = 228, kLowest = 95;  // of the domes, with the fold where they end [mm]
   if (x.z() > kHighest + 10 || x.z() < kLowest - 10) return x.z() - (x.z() > kHighest ? kHighest : kLowest);
-  const Eigen::Vector2d q = CageSection(x.z(), kDiaphragmInset).DiscCoordinates(x.head<2>());
+  thread_local LastCageSection last;
+  const Eigen::Vector2d q = last.At(x.z(), kDiaphragmInset).DiscCoordinates(x.head<2>());
   const double r = std::clamp(q.norm(), 2 * kStep, 1 - kStep);
   const Eigen::Vector2d unit = q / std::max(q.norm(), 1e-9);
   const double height = DomeHeight(r * unit);

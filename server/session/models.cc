@@ -11,8 +11,10 @@
 #include "google/protobuf/io/zero_copy_stream_impl_lite.h"
 #include "server/imaging/surfaces/derived_bodies.h"
 #include "server/mechanics/compile/shape_size.h"
+#include "server/mechanics/parallel/compile_threads.h"
 #include "server/mechanics/stop_check.h"
 #include "server/schema/schema.h"
+#include "server/session/mesh_cache/meshes_ahead.h"
 #include "server/session/meshes.h"
 #include "server/session/scene_hash.h"
 
@@ -150,7 +152,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Models::CompileNow(const v1::Scene&
   const auto size = EstimateSize(scene, options.size_of, options.limits);
   if (!size.ok()) return size.status();
   job.elements = size->elements;
-  const MeshSource source = MakeMeshSource(data_dir_, surfaces, cache_);
+  const MeshSource source = MeshesAhead(scene, MakeMeshSource(data_dir_, surfaces, cache_), CompileThreads());
   if (by.trusted) return phrenic::Compile(scene, imaging::WithDerived(source, scene), options);
   options.longest = limits_.compile_seconds;
   options.cancelled = [&by, &job] { return job.others == 0 && IsCancelled(by); };

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <random>
 #include <set>
 #include <thread>
@@ -11,6 +12,7 @@
 #include "server/mechanics/block_constraint.h"
 #include "server/mechanics/constraint_residual.h"
 #include "server/mechanics/forces/spring_rows.h"
+#include "server/mechanics/parallel/compile_threads.h"
 #include "tests/compile_text.h"
 #include "tests/mechanics/mixed_sheet.h"
 
@@ -126,6 +128,32 @@ TEST(ParallelFor, CallsOnceForEachPartFromManyCallersAtOnce) {
     }
     for (std::thread& caller : callers) caller.join();
   }
+}
+
+TEST(ForEachPart, CallsEachPartOnceOnAnyNumberOfThreads) {
+  const int before = CompileThreads();
+  for (const int threads : {1, 2, 5, 16}) {
+    SetCompileThreads(threads);
+    for (const int parts : {0, 1, 3, 700}) {
+      std::vector<std::atomic<int>> calls(static_cast<size_t>(parts));
+      ForEachPart(parts, [&](std::int64_t part) { ++calls[part]; });
+      for (const std::atomic<int>& count : calls) EXPECT_EQ(count, 1);
+    }
+  }
+  SetCompileThreads(before);
+}
+
+TEST(ForEachPart, LeavesOutWhatFollowsAStop) {
+  const int before = CompileThreads();
+  SetCompileThreads(1);
+  int asked = 0, done = 0;
+  ForEachPartUntil(
+      1000, [&] { return ++asked > 3; }, [&](std::int64_t) { ++done; });
+  EXPECT_EQ(done, 3);
+  ForEachPartUntil(
+      1000, [] { return false; }, [&](std::int64_t) { ++done; });
+  EXPECT_EQ(done, 1003);
+  SetCompileThreads(before);
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 #include "server/session/mesh_cache/mesh_cache.h"
 
 #include <gmock/gmock.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -109,6 +111,48 @@ TEST_F(KeptMeshes, TakeNoMoreRoomThanTheyMay) {
   EXPECT_EQ(Files().size(), 3);
   Get(cache, 19);
   EXPECT_EQ(generated_, 20) << "the latest is kept";
+}
+
+TEST_F(KeptMeshes, OfManyProgramsAreWhole) {
+  std::vector<pid_t> programs;
+  for (int i = 0; i < 3; ++i) {
+    const pid_t program = fork();
+    if (program == 0) {
+      bool whole = true;
+      for (int k = 0; k < 40; ++k)
+        whole = whole && Get(MeshCache(folder_), k % 5).vertices == SmallMesh(k % 5).vertices;
+      _exit(whole ? 0 : 1);
+    }
+    ASSERT_GT(program, 0);
+    programs.push_back(program);
+  }
+  for (const pid_t program : programs) {
+    int status = -1;
+    EXPECT_EQ(waitpid(program, &status, 0), program);
+    EXPECT_EQ(status, 0);
+  }
+  EXPECT_EQ(Files().size(), 5) << "no file is left unfinished";
+  for (int k = 0; k < 5; ++k) Get(MeshCache(folder_), k);
+  EXPECT_EQ(generated_, 0) << "each is read here";
+}
+
+TEST_F(KeptMeshes, ThatAreUsedStay) {
+  const auto size = static_cast<std::int64_t>(PackMesh(SmallMesh(1)).size());
+  const MeshCache cache(folder_, 3 * size);
+  const auto age = [&](std::chrono::hours by) {
+    for (const fs::path& file : Files()) fs::last_write_time(file, fs::last_write_time(file) - by);
+  };
+  for (int k = 0; k < 3; ++k) {
+    Get(cache, k);
+    age(std::chrono::hours(1));
+  }
+  Get(cache, 0);  // used last from now on
+  Get(cache, 7);
+  ASSERT_EQ(generated_, 4);
+  Get(cache, 0);
+  EXPECT_EQ(generated_, 4) << "the first is kept";
+  Get(cache, 1);
+  EXPECT_EQ(generated_, 5) << "the one that was used first is not";
 }
 
 TEST_F(KeptMeshes, OfAFolderThatCannotBeWrittenAreGenerated) {

@@ -5,9 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
+#include "absl/container/flat_hash_map.h"
+#include "absl/container/inlined_vector.h"
 #include "server/anatomy/meshing/remesh.h"
 #include "server/mesh/renumber.h"
 #include "server/mesh/topology.h"
@@ -73,7 +74,7 @@ class MarchingTetrahedra {
   }
 
   void Tetrahedron(const std::array<int, 4>& nodes) {
-    std::vector<int> in, out;
+    absl::InlinedVector<int, 4> in, out;
     for (const int node : nodes) (In(node) ? in : out).push_back(node);
     if (in.empty() || out.empty()) return;
     if (in.size() == 1) {
@@ -112,7 +113,7 @@ class MarchingTetrahedra {
   double cell_;
   Eigen::Vector3i size_;
   std::vector<double> values_;
-  std::unordered_map<int64_t, int> cuts_;
+  absl::flat_hash_map<int64_t, int> cuts_;
   std::vector<Eigen::Vector3d> points_;
   std::vector<Eigen::Vector3i> triangles_;
 };

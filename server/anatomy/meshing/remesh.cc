@@ -74,8 +74,9 @@ Mesh Remesh(const Field& field, const Mesh& fine, double edge_length) {
   Triangles triangles = fine.triangles;
   for (int round = 0; round < kRounds; ++round) {
     CollapseShortEdges(0.72 * edge_length, 1.5 * edge_length, points, triangles);
+    EdgeFlips flips(triangles);
     for (int i = 0; i < kRelaxations; ++i) {
-      FlipToDelaunay(points, triangles);
+      flips.ToDelaunay(points);
       Relax(field, edge_length, triangles, points);
     }
   }

@@ -4,8 +4,9 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <unordered_map>
-#include <vector>
+
+#include "absl/container/flat_hash_map.h"
+#include "absl/container/inlined_vector.h"
 
 namespace phrenic::anatomy {
 
@@ -33,7 +34,7 @@ class SpacedPoints {
   Eigen::Vector3i Cell(const Eigen::Vector3d& point) const;
 
   double cell_, apart_;
-  std::unordered_map<int64_t, std::vector<Entry>> cells_;
+  absl::flat_hash_map<int64_t, absl::InlinedVector<Entry, 2>> cells_;
 };
 
 }  // namespace phrenic::anatomy

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "server/mechanics/parallel/compile_threads.h"
+
 namespace phrenic {
 namespace {
 
@@ -92,8 +94,8 @@ void InnerWall::Tabulate() {
   for (size_t part = 0; part < kCageParts; ++part) {
     shape_.weight[part].resize(weight_[part].size() > 0 ? shape_.radius.size() : 0);
   }
-  for (int entry = 0; entry < kTurns * kHeights; ++entry) {
-    const int row = entry / kTurns, turn = entry % kTurns;
+  const auto tabulate = [&](int row, int turn) {
+    const int entry = row * kTurns + turn;
     const double azimuth = AzimuthOfTurn(turn / kQuarter);
     const double z = bottom_ + height_ * row / (kHeights - 1);
     const GridCoordinates there = grid_.Locate(rest_, azimuth, z, grid_.Guess(rest_, azimuth, z));
@@ -107,7 +109,10 @@ void InnerWall::Tabulate() {
     for (size_t part = 0; part < kCageParts; ++part) {
       if (weight_[part].size() > 0) shape_.weight[part][entry] = grid_.At(weight_[part], there).x();
     }
-  }
+  };
+  ForEachPart(kHeights, [&](std::int64_t row) {
+    for (int turn = 0; turn < kTurns; ++turn) tabulate(static_cast<int>(row), turn);
+  });
 }
 
 bool InnerWall::IsFarInside(const WallTable& table, const Eigen::Vector3d& point, double margin) const {
@@ -185,20 +190,29 @@ InnerWall::Volumes InnerWall::VolumesAbove(const std::vector<Eigen::Vector3d>& l
     const PolarPoint polar = grid_.Polar(point);
     feet.push_back(grid_.Locate(rest_, polar.azimuth, polar.z, grid_.Guess(rest_, polar.azimuth, polar.z)));
   }
-  const auto volumes = [&](const Points& grid) { return VolumeOf(grid, feet, loop, apex); };
+  // The volumes of every grid, then their changes.
+  std::vector<const Points*> grids = {&rest_};
+  for (const Points& moved : moved_) grids.push_back(&moved);
+  for (const PartGrids& part : parts_) {
+    for (size_t i = 0; i < part.departed.size(); ++i) {
+      grids.push_back(&part.departed[i]);
+      grids.push_back(&part.shared[i]);
+    }
+  }
+  std::vector<Eigen::Vector2d> volumes(grids.size());
+  ForEachPart(std::ssize(grids), [&](std::int64_t g) { volumes[g] = VolumeOf(*grids[g], feet, loop, apex); });
   const CageFit fit;
-  const Eigen::Vector2d at_rest = volumes(rest_);
   Volumes result;
   for (size_t k = 0; k < moved_.size(); ++k) {
-    const Eigen::Vector2d change = volumes(moved_[k]) - at_rest;
+    const Eigen::Vector2d change = volumes[1 + k] - volumes[0];
     fit.Add(k, change[0], result.right.shared);
     fit.Add(k, change[1], result.left.shared);
   }
+  size_t next = 1 + moved_.size();
   for (size_t part = 0; part < kCageParts; ++part) {
-    const PartGrids& grids = parts_[part];
     std::array<double, 4> right = {}, left = {};
-    for (size_t i = 0; i < grids.departed.size(); ++i) {
-      const Eigen::Vector2d change = volumes(grids.departed[i]) - volumes(grids.shared[i]);
+    for (size_t i = 0; i < parts_[part].departed.size(); ++i, next += 2) {
+      const Eigen::Vector2d change = volumes[next] - volumes[next + 1];
       right[i] = change[0], left[i] = change[1];
     }
     result.right.parts[part] = CageFit::Through(right);

@@ -57,15 +57,18 @@ absl::StatusOr<WallGrid> WallGrid::Find(const Points& rest) {
 int WallGrid::StarRows(const Points& rest) const {
   for (int i = 0; i < rest.cols(); ++i) {
     const int next = i / columns_ * columns_ + (i + 1) % columns_;
-    if (!(Wrapped(Polar(rest.col(next)).azimuth - Polar(rest.col(i)).azimuth) > 0)) return i / columns_;
+    if (!(Wrapped(Azimuth(rest.col(next)) - Azimuth(rest.col(i))) > 0)) return i / columns_;
   }
   return rows_;
 }
 
+double WallGrid::Azimuth(const Eigen::Vector3d& point) const {
+  const double azimuth = std::atan2(point.x(), -(point.y() - axis_y_));
+  return azimuth < 0 ? azimuth + kTurn : azimuth;
+}
+
 PolarPoint WallGrid::Polar(const Eigen::Vector3d& point) const {
-  const double y = point.y() - axis_y_;
-  const double azimuth = std::atan2(point.x(), -y);
-  return {azimuth < 0 ? azimuth + kTurn : azimuth, point.z(), std::hypot(point.x(), y)};
+  return {Azimuth(point), point.z(), std::hypot(point.x(), point.y() - axis_y_)};
 }
 
 Eigen::Vector3d WallGrid::At(const Points& grid, const GridCoordinates& at) const {
@@ -88,14 +91,14 @@ GridCoordinates WallGrid::Guess(const Points& rest, double azimuth, double z) co
 GridCoordinates WallGrid::Locate(const Points& grid, double azimuth, double z, const GridCoordinates& guess) const {
   GridCoordinates at = guess;
   for (int step = 0; step < kLocateSteps; ++step) {
-    const PolarPoint here = Polar(At(grid, at));
-    const PolarPoint left = Polar(At(grid, {at.column - 0.5, at.row}));
-    const PolarPoint right = Polar(At(grid, {at.column + 0.5, at.row}));
-    const double around = std::max(Wrapped(right.azimuth - left.azimuth), 0.1 * kTurn / columns_);
+    const Eigen::Vector3d here = At(grid, at);
+    const double left = Azimuth(At(grid, {at.column - 0.5, at.row}));
+    const double right = Azimuth(At(grid, {at.column + 0.5, at.row}));
+    const double around = std::max(Wrapped(right - left), 0.1 * kTurn / columns_);
     const double low = std::clamp(at.row - 0.5, 0.0, rows_ - 2.0);
     const double up = At(grid, {at.column, low + 1}).z() - At(grid, {at.column, low}).z();
-    const double columns = std::clamp(Wrapped(azimuth - here.azimuth) / around, -kMostColumns, kMostColumns);
-    const double row = std::clamp(at.row + (up > 0 ? (z - here.z) / up : 0), 0.0, rows_ - 1.0);
+    const double columns = std::clamp(Wrapped(azimuth - Azimuth(here)) / around, -kMostColumns, kMostColumns);
+    const double row = std::clamp(at.row + (up > 0 ? (z - here.z()) / up : 0), 0.0, rows_ - 1.0);
     const bool done = std::abs(columns) < kLocated && std::abs(row - at.row) < kLocated;
     at = {at.column + columns, row};
     if (done) break;

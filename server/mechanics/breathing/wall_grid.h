@@ -41,6 +41,7 @@ class WallGrid {
 
  private:
   int StarRows(const Points& rest) const;
+  double Azimuth(const Eigen::Vector3d& point) const;  // of Polar
 
   int columns_ = 0, rows_ = 0, star_rows_ = 0;
   double axis_y_ = 0;  // [m]

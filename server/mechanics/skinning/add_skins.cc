@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/mechanics/parallel/compile_threads.h"
 #include "server/mechanics/skinning/bar_weights.h"
 #include "server/mechanics/skinning/inverse_distance_weights.h"
 #include "server/mechanics/skinning/sheet_skin.h"
@@ -34,14 +35,36 @@ std::vector<SkinWeight> ByVertex(const std::vector<SkinWeight>& weights, Eigen::
   return sorted;
 }
 
+// Appends lists of weights, one after another.
+std::vector<SkinWeight> Joined(const std::vector<std::vector<SkinWeight>>& parts) {
+  size_t count = 0;
+  for (const auto& part : parts) count += part.size();
+  std::vector<SkinWeight> joined;
+  joined.reserve(count);
+  for (const auto& part : parts) joined.insert(joined.end(), part.begin(), part.end());
+  return joined;
+}
+
+// Calls append(PartRange, weights) for parts of so many vertices, on all cores, and returns the weights in order.
+template <typename Append>
+std::vector<SkinWeight> WeighAll(Eigen::Index vertices, const StopCheck& stop, const Append& append) {
+  std::vector<std::vector<SkinWeight>> parts(static_cast<size_t>(CountParts(vertices)));
+  ForEachPartUntil(
+      std::ssize(parts), [&stop] { return stop.Stopped(); },
+      [&](std::int64_t part) { append(PartOf(vertices, part), parts[part]); });
+  return Joined(parts);
+}
+
 Skin SkinByDistance(const SkinDrivers& drivers, const BodyModel& body, int b, const StopCheck& stop) {
   const Points& vertices = body.mesh.vertices;
-  InverseDistanceWeights by_distance(drivers);
-  std::vector<SkinWeight> weights;
-  for (const int i : HilbertOrder(vertices)) {
-    if (stop.Stopped()) break;
-    by_distance.Append(vertices.col(i), i, weights);
-  }
+  const std::vector<int> order = HilbertOrder(vertices);
+  const auto append = [&](const PartRange& range, std::vector<SkinWeight>& weights) {
+    InverseDistanceWeights by_distance(drivers);
+    for (std::int64_t i = range.first; i < range.end; ++i) {
+      by_distance.Append(vertices.col(order[i]), order[i], weights);
+    }
+  };
+  const std::vector<SkinWeight> weights = WeighAll(vertices.cols(), stop, append);
   return {.body = b, .weights = ByVertex(weights, vertices.cols()), .triangles = {}, .sheet = nullptr};
 }
 
@@ -67,8 +90,10 @@ void SkinAllSmoothly(const std::vector<int>& bodies, const std::vector<int>& dri
   std::int64_t vertices = 0;
   for (const int b : bodies) {
     const Points& rest = builder.model.bodies[b].mesh.vertices;
-    std::vector<SkinWeight> weights;
-    for (int i = 0; i < rest.cols() && !builder.stop.Stopped(); ++i) smooth.Append(rest.col(i), i, weights);
+    const auto append = [&](const PartRange& range, std::vector<SkinWeight>& of) {
+      for (std::int64_t i = range.first; i < range.end; ++i) smooth.Append(rest.col(i), static_cast<int>(i), of);
+    };
+    std::vector<SkinWeight> weights = WeighAll(rest.cols(), builder.stop, append);
     AddSkin({.body = b, .weights = std::move(weights), .triangles = {}, .sheet = nullptr}, builder);
     vertices += rest.cols();
   }

@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/mechanics/parallel/compile_threads.h"
 #include "server/mechanics/skinning/driver_triangles.h"
 #include "server/mesh/normals.h"
 #include "server/mesh/units.h"
@@ -116,10 +117,14 @@ absl::StatusOr<Skin> SheetBinder::Bind(int body, double thickness, const std::st
                                        v1::MappingReport& report) const {
   const BodyModel& seen = builder_.model.bodies[body];
   const auto n = static_cast<int>(seen.mesh.vertices.cols());
-  Skin skin{.body = body, .weights = {}, .triangles = {}, .sheet = sheet_};
+  Skin skin{.body = body, .weights = {}, .triangles = std::vector<TriangleBinding>(n), .sheet = sheet_};
+  ForEachPart(CountParts(n), [&](std::int64_t part) {
+    const PartRange range = PartOf(n, part);
+    for (std::int64_t i = range.first; i < range.end; ++i) skin.triangles[i] = Foot(seen.mesh.vertices.col(i));
+  });
   double sum = 0, furthest = 0;
   for (int i = 0; i < n; ++i) {
-    const TriangleBinding& foot = skin.triangles.emplace_back(Foot(seen.mesh.vertices.col(i)));
+    const TriangleBinding& foot = skin.triangles[i];
     const std::string vertex = absl::StrCat("vertex ", i, " of body \"", seen.name, "\"");
     if (absl::Status status = CheckFoot(foot, thickness, vertex, path); !status.ok()) return status;
     sum += std::abs(foot.height);

@@ -24,6 +24,13 @@ double Smoothstep(double t) {
   return t * t * (3 - 2 * t);
 }
 
+// Returns the distance within which a driver has a share, given the least softened distance so far [m^2]: beyond it
+// (least / softened)^2 is below kSmallestShare.
+double ShareReach(double least) {
+  constexpr double kSlack = 1 + 1e-9;  // above rounding errors
+  return std::sqrt(least / std::sqrt(kSmallestShare)) * kSlack;
+}
+
 std::vector<int> Those(const ModelBuilder& builder, const std::vector<int>& bodies, bool deformable) {
   std::vector<int> chosen;
   std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(chosen),
@@ -35,7 +42,18 @@ std::vector<int> Those(const ModelBuilder& builder, const std::vector<int>& bodi
 
 SmoothWeights::SmoothWeights(const ModelBuilder& builder, const std::vector<int>& drivers)
     : carriers_(FarthestFirst(builder, Those(builder, drivers, true))),
-      others_(builder, Those(builder, drivers, false)) {}
+      others_(builder, Those(builder, drivers, false)) {
+  const auto count = std::ssize(carriers_);
+  for (Eigen::ArrayXd* column : {&columns_.x, &columns_.y, &columns_.z, &columns_.scaled, &columns_.level}) {
+    column->resize(count);
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Carrier& carrier = carriers_[i];
+    columns_.x[i] = carrier.at.x(), columns_.y[i] = carrier.at.y(), columns_.scaled[i] = carrier.at.z();
+    columns_.z[i] = carrier.at.z() / kUpright;
+    columns_.level[i] = carrier.level;
+  }
+}
 
 std::vector<SmoothWeights::Carrier> SmoothWeights::FarthestFirst(const ModelBuilder& builder,
                                                                  const std::vector<int>& bodies) {
@@ -49,13 +67,22 @@ std::vector<SmoothWeights::Carrier> SmoothWeights::FarthestFirst(const ModelBuil
     }
   }
   const size_t used = std::min(order.size(), kMostCarriers);
+  Eigen::ArrayXd x(order.size()), y(order.size()), z(order.size());
+  for (size_t i = 0; i < order.size(); ++i) x[i] = order[i].at.x(), y[i] = order[i].at.y(), z[i] = order[i].at.z();
+  Eigen::ArrayXd squared = Eigen::ArrayXd::Constant(std::ssize(order), std::numeric_limits<double>::infinity());
   for (size_t next = 1; next < used && !builder.stop.Stopped(); ++next) {
+    const auto left = std::ssize(order) - static_cast<Eigen::Index>(next);
+    const Eigen::Vector3d& last = order[next - 1].at;
+    squared.tail(left) = squared.tail(left).min(
+        (x.tail(left) - last.x()).square() + ((y.tail(left) - last.y()).square() + (z.tail(left) - last.z()).square()));
+    // Compares distances, of which more are equal than of their squares: the first of equals is taken.
     size_t farthest = next;
     for (size_t i = next; i < order.size(); ++i) {
-      order[i].apart = std::min(order[i].apart, (order[i].at - order[next - 1].at).norm());
-      if (order[i].apart > order[farthest].apart) farthest = i;
+      if (squared[i] > squared[farthest] && std::sqrt(squared[i]) > std::sqrt(squared[farthest])) farthest = i;
     }
     std::swap(order[next], order[farthest]);
+    for (Eigen::ArrayXd* column : {&x, &y, &z, &squared}) std::swap((*column)[next], (*column)[farthest]);
+    order[next].apart = std::sqrt(squared[next]);
   }
   order.resize(used);
   return order;
@@ -65,25 +92,25 @@ double SmoothWeights::Softened(const Carrier& carrier, const Eigen::Vector3d& sc
   return ((carrier.at - scaled).squaredNorm() + kSmoothing * kSmoothing) / carrier.level;
 }
 
-// Returns s_min [m^2]; infinity without deformable drivers.
-double SmoothWeights::Smallest(const Eigen::Vector3d& scaled) const {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const Carrier& carrier : carriers_) smallest = std::min(smallest, Softened(carrier, scaled));
-  return smallest;
+// Returns the least of all carriers' softened distances, at these z, from a point at `at_z` [m^2]; infinity without
+// deformable drivers.
+double SmoothWeights::Smallest(const Eigen::Vector3d& point, const Eigen::ArrayXd& z, double at_z) const {
+  if (carriers_.empty()) return std::numeric_limits<double>::infinity();
+  const auto squared = (columns_.x - point.x()).square() + ((columns_.y - point.y()).square() + (z - at_z).square());
+  return ((squared + kSmoothing * kSmoothing) / columns_.level).minCoeff();
 }
 
-// Returns the shares of all deformable drivers together and of each other one.
+// Returns the shares of all deformable drivers together and of each other one. Those beyond the reach within which a
+// driver has a share are not searched.
 std::vector<SmoothWeights::Share> SmoothWeights::Shares(const Eigen::Vector3d& point) const {
   if (others_.count() == 0) return {{-1, -1, 1}};
-  double softened = std::numeric_limits<double>::infinity();
-  for (const Carrier& carrier : carriers_) {
-    const Eigen::Vector3d apart = point - Eigen::Vector3d(carrier.at.x(), carrier.at.y(), carrier.at.z() / kUpright);
-    softened = std::min(softened, (apart.squaredNorm() + kSmoothing * kSmoothing) / carrier.level);
-  }
+  double softened = Smallest(point, columns_.z, point.z()), least = softened;
   std::vector<Share> shares = {{-1, -1, 1 / (softened * softened)}};
   for (int driver = 0; driver < others_.count(); ++driver) {
-    const Neighbour nearest = others_.search(driver).Nearest(point);
+    const Neighbour nearest = others_.search(driver).Nearest(point, ShareReach(least));
+    if (nearest.vertex < 0) continue;
     softened = nearest.distance * nearest.distance + kSmoothing * kSmoothing;
+    least = std::min(least, softened);
     shares.push_back({driver, nearest.vertex, 1 / (softened * softened)});
   }
   double largest = 0, sum = 0;
@@ -115,7 +142,7 @@ void SmoothWeights::Append(const Eigen::Vector3d& point, int for_vertex, std::ve
   for (const Share& share : Shares(point)) {
     if (share.weight == 0) continue;
     if (share.driver < 0) {
-      AppendCarriers(scaled, Smallest(scaled), share.weight, for_vertex, weights);
+      AppendCarriers(scaled, Smallest(scaled, columns_.scaled, scaled.z()), share.weight, for_vertex, weights);
     } else {
       others_.AppendWeights({share.driver, share.vertex, 0}, for_vertex, share.weight, weights);
     }

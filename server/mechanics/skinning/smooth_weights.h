@@ -17,7 +17,7 @@ namespace phrenic {
 // by s_min^(-2), here with dz^2 for (0.35 dz)^2 and nz = 1 at the other drivers; shares below 1 % of the largest are
 // dropped. Weights are continuous functions of the point.
 //
-// The builder must outlive it. Not thread-safe.
+// The builder must outlive it and not change; then it is thread-safe.
 class SmoothWeights {
  public:
   SmoothWeights(const ModelBuilder& builder, const std::vector<int>& drivers);
@@ -39,14 +39,21 @@ class SmoothWeights {
     int vertex;
     double weight;
   };
+  // The carriers as columns of numbers, so that a loop over all computes several at a time.
+  struct Columns {
+    Eigen::ArrayXd x, y, z;  // at rest [m]
+    Eigen::ArrayXd scaled;   // z scaled [m]
+    Eigen::ArrayXd level;
+  };
   static std::vector<Carrier> FarthestFirst(const ModelBuilder& builder, const std::vector<int>& bodies);
   static double Softened(const Carrier& carrier, const Eigen::Vector3d& scaled);
-  double Smallest(const Eigen::Vector3d& scaled) const;
+  double Smallest(const Eigen::Vector3d& point, const Eigen::ArrayXd& z, double at_z) const;
   std::vector<Share> Shares(const Eigen::Vector3d& point) const;
   void AppendCarriers(const Eigen::Vector3d& scaled, double smallest, double share, int for_vertex,
                       std::vector<SkinWeight>& weights) const;
 
   std::vector<Carrier> carriers_;
+  Columns columns_;     // of carriers_
   SkinDrivers others_;  // the drivers that are not deformable
 };
 

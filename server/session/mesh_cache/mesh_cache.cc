@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kHashDigits = 64;
 constexpr char kEnding[] = ".mesh";
+constexpr char kLayout[] = "2";  // of PackMesh: another one, another name
 
 // Returns the lines of /proc/cpuinfo about the first processor that decide which functions the libraries choose.
 const std::string& Processor() {
@@ -82,10 +83,10 @@ class Unpacker {
   bool good_ = true;
 };
 
-// Deletes the files that were written first, until the others have at most `most` bytes.
+// Deletes the files that were used first, until the others have at most `most` bytes.
 void DropOldest(const std::string& folder, std::int64_t most) {
   struct File {
-    fs::file_time_type written;
+    fs::file_time_type used;
     std::int64_t size;
     fs::path path;
   };
@@ -96,7 +97,7 @@ void DropOldest(const std::string& folder, std::int64_t most) {
     const File file = {each->last_write_time(gone), static_cast<std::int64_t>(each->file_size(gone)), each->path()};
     if (!gone) files.push_back(file);
   }
-  std::sort(files.begin(), files.end(), [](const File& a, const File& b) { return a.written > b.written; });
+  std::sort(files.begin(), files.end(), [](const File& a, const File& b) { return a.used > b.used; });
   std::int64_t sum = 0;
   for (const File& file : files) {
     sum += file.size;
@@ -155,10 +156,14 @@ absl::StatusOr<Mesh> MeshCache::Get(const v1::Anatomy& part, const v1::Generated
                                     absl::FunctionRef<absl::StatusOr<Mesh>()> generate) const {
   if (folder_.empty()) return generate();
   const std::string key =
-      absl::StrCat(kMeshCode, Processor(), part.SerializeAsString(), "|", shape.SerializeAsString());
+      absl::StrCat(kLayout, "|", kMeshCode, Processor(), part.SerializeAsString(), "|", shape.SerializeAsString());
   const std::string file = absl::StrCat(folder_, "/", Sha256Hex(key), kEnding);
   if (const auto bytes = ReadBytes(file)) {
-    if (auto mesh = UnpackMesh(*bytes)) return *std::move(mesh);
+    if (auto mesh = UnpackMesh(*bytes)) {
+      std::error_code ignored;  // of a folder that may only be read
+      fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
+      return *std::move(mesh);
+    }
   }
   absl::StatusOr<Mesh> mesh = generate();
   if (mesh.ok()) Keep(file, PackMesh(*mesh));

@@ -18,8 +18,8 @@ namespace phrenic::session {
 // of these variables is set.
 std::string DefaultCacheFolder();
 
-// A folder of files, one per mesh, named by a hash of the part, its resolution, the code that generates it (kMeshCode)
-// and the processor: other versions generate other bits, and so do the libraries' functions on another processor. All
+// A folder of files, one per mesh, named by a hash of the part, its resolution, the code that generates it (kMeshCode),
+// the layout of the file and the processor: other versions generate other bits, and so do the libraries' functions on another processor. All
 // programs of a build share the files. Damaged ones
 // are generated again. A folder that cannot be written to disables the cache without an error. Thread-safe, also across
 // processes, as files are complete before they get their name.
@@ -28,7 +28,7 @@ class MeshCache {
   static constexpr std::int64_t kMostBytes = 256 << 20;
 
   // `folder` empty or "none": keeps nothing. It is created when the first mesh is kept, readable by its owner alone.
-  // Above `most_bytes` in all, the files that were written first are deleted.
+  // Above `most_bytes` in all, the files that were used first are deleted.
   explicit MeshCache(std::string folder = "", std::int64_t most_bytes = kMostBytes);
 
   // Returns the kept mesh of a generated part, with the bits that `generate` gives, or the result of `generate`, which
