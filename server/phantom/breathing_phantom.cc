@@ -217,7 +217,7 @@ absl::Status BreathingPhantom::FillCt(std::size_t phase, const GoOn& go_on, Phan
     rendered.ct[voxel] = constant[s];
     if (structures_.all[s].tissue != Tissue::kLung || !interiors_[s]->is_elastic()) continue;
     const double ratio = at_first[s] * interiors_[s]->VolumeRatioAt(interiors_[s]->OriginOf(Place(voxel)));
-    rendered.ct[voxel] = Rounded(LungHounsfield(std::max(ratio, kDensest)));
+    rendered.ct[voxel] = Rounded(LungHounsfield(std::clamp(ratio, kDensest, kThinnest)));
   }
   return absl::OkStatus();
 }

@@ -17,6 +17,7 @@ absl::StatusOr<std::string> WriteCtSlice(const DicomStudy& study, const PhantomP
   Put(data, DCM_AcquisitionNumber, absl::StrCat(1 + phase));
   Put(data, DCM_InstanceNumber, absl::StrCat(k + 1));
   Put(data, DCM_PatientPosition, "HFS");
+  Put(data, DCM_BodyPartExamined, "CHEST");
   data.insertEmptyElement(DCM_KVP);
   PutDecimals(data, DCM_PixelSpacing, {spacing.y(), spacing.x()});
   PutDecimals(data, DCM_SliceThickness, {spacing.z()});

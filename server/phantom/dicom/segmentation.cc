@@ -91,8 +91,10 @@ void AddGroups(const imaging::LabelVolume& volume, const Frames& frames, DcmItem
   for (const auto& [segment, k] : frames.at) {
     DcmItem& group = AddItem(data, DCM_PerFrameFunctionalGroupsSequence);
     DcmItem& content = AddItem(group, DCM_FrameContentSequence);
-    content.putAndInsertUint32(DCM_DimensionIndexValues, static_cast<Uint32>(segment), 0);
-    content.putAndInsertUint32(DCM_DimensionIndexValues, static_cast<Uint32>(k + 1), 1);
+    const std::array<Uint32, 2> index = {static_cast<Uint32>(segment), static_cast<Uint32>(k + 1)};
+    auto* values = new DcmUnsignedLong(DCM_DimensionIndexValues);  // the item owns it
+    values->putUint32Array(index.data(), index.size());
+    content.insert(values);
     const Eigen::Vector3d at = volume.to_patient * Eigen::Vector3d(0, 0, k);
     PutDecimals(AddItem(group, DCM_PlanePositionSequence), DCM_ImagePositionPatient, {at.x(), at.y(), at.z()});
     Put(AddItem(group, DCM_SegmentIdentificationSequence), DCM_ReferencedSegmentNumber, segment);
