@@ -20,7 +20,8 @@ namespace {
 using fluoroscopy::Tissue;
 using imaging::LabelVolume;
 
-constexpr double kDensest = 0.3;                   // volume of lung relative to rest at which it has no air
+// Volume of lung relative to rest: at the first it has no air left, and no lung inflates beyond the second.
+constexpr double kDensest = 0.3, kThinnest = 5;
 constexpr double kAround = 10, kAroundTrunk = 30;  // free space around structures, sideways with a trunk [mm]
 
 // Calls then(index of the voxel) for each voxel whose centre is inside the closed surface [m].

@@ -67,7 +67,9 @@ TEST_F(Phantom, LabelsHaveTheVolumesOfTheSurfaces) {
       // Voxels at the surface are in or out by chance: of area / h^2 of them, twice the standard deviation and a half.
       const double allowed = 1.5 * std::pow(kSpacing, 3) * std::sqrt(area) / kSpacing;
       EXPECT_NEAR(volume, voxels.enclosed_mm3, allowed) << All()[s].name << " in phase " << phase;
-      if (voxels.enclosed_mm3 > 2e5) EXPECT_NEAR(volume / voxels.enclosed_mm3, 1, 0.01) << All()[s].name;
+      if (voxels.enclosed_mm3 > 2e5) {
+        EXPECT_NEAR(volume / voxels.enclosed_mm3, 1, 0.01) << All()[s].name;
+      }
       EXPECT_LE(voxels.labelled, voxels.inside);
     }
   }

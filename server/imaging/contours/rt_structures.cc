@@ -18,15 +18,15 @@
 namespace phrenic::imaging {
 namespace {
 
-constexpr double kPixel = 1.5;            // [mm]
-constexpr double kMostOfVolume = 3e7;     // voxels
-constexpr double kLargest = 3000;         // extent of all contours [mm]
-constexpr double kFlat = 0.05;            // largest deviation of a contour from its slice [mm]
-constexpr double kMostRowsCrossed = 5e7;  // by all edges
-constexpr int kMargin = 2;                // free pixels around contours
+constexpr double kContourPixel = 1.5;       // [mm]
+constexpr double kMostContourVoxels = 3e7;  // voxels
+constexpr double kWidestContours = 3000;    // extent of all contours [mm]
+constexpr double kOffContourPlane = 0.05;   // largest deviation of a contour from its slice [mm]
+constexpr double kMostRowsCrossed = 5e7;    // by all edges
+constexpr int kPixelsAround = 2;            // free pixels around contours
 
 // A region of interest.
-struct Region {
+struct ContouredRegion {
   int number = 0;
   std::string name, meaning;
   std::vector<Eigen::Matrix2Xd> contours;  // x and y [mm]
@@ -34,7 +34,7 @@ struct Region {
 };
 
 // Where an error is: "contour 3 of the region 7".
-struct Origin {
+struct ContourOrigin {
   int region = 0, contour = 0;
   absl::Status Error(const std::string& what) const {
     return absl::InvalidArgumentError(absl::StrCat("contour ", contour, " of the region ", region, ": ", what));
@@ -43,7 +43,7 @@ struct Origin {
 
 // Calls then(item) for each item of a sequence until an error.
 template <typename Then>
-absl::Status ForEachItem(DcmItem& parent, const DcmTagKey& attribute, const Then& then) {
+absl::Status ForEachContourItem(DcmItem& parent, const DcmTagKey& attribute, const Then& then) {
   DcmSequenceOfItems* sequence = nullptr;
   if (parent.findAndGetSequence(attribute, sequence).bad() || sequence == nullptr) return absl::OkStatus();
   DcmObject* next = nullptr;
@@ -53,7 +53,7 @@ absl::Status ForEachItem(DcmItem& parent, const DcmTagKey& attribute, const Then
   return absl::OkStatus();
 }
 
-int NumberOf(DcmItem& item, const DcmTagKey& attribute) {
+int IntegerAt(DcmItem& item, const DcmTagKey& attribute) {
   Sint32 number = 0;
   return item.findAndGetSint32(attribute, number).good() ? static_cast<int>(number) : 0;
 }
@@ -74,14 +74,14 @@ bool ParseDecimals(std::string_view text, std::vector<double>& numbers) {
   return true;
 }
 
-absl::Status AddContour(DcmItem& item, const Origin& origin, Region& region) {
+absl::Status AddContour(DcmItem& item, const ContourOrigin& origin, ContouredRegion& region) {
   OFString data;
   std::vector<double> numbers;
   if (item.findAndGetOFStringArray(DCM_ContourData, data).bad() ||
       !ParseDecimals({data.c_str(), data.length()}, numbers)) {
     return origin.Error("ContourData (3006,0050) is missing or not a list of numbers; export the structures again");
   }
-  const std::size_t stated = static_cast<std::size_t>(std::max(0, NumberOf(item, DCM_NumberOfContourPoints)));
+  const std::size_t stated = static_cast<std::size_t>(std::max(0, IntegerAt(item, DCM_NumberOfContourPoints)));
   if (numbers.size() % 3 != 0 || (stated != 0 && numbers.size() != 3 * stated)) {
     return origin.Error(absl::StrCat("ContourData (3006,0050) has ", numbers.size(),
                                      " numbers, NumberOfContourPoints (3006,0046) is ", stated,
@@ -89,7 +89,7 @@ absl::Status AddContour(DcmItem& item, const Origin& origin, Region& region) {
   }
   const Eigen::Map<const Eigen::Matrix3Xd> points(numbers.data(), 3, static_cast<Eigen::Index>(numbers.size() / 3));
   if (points.cols() < 3) return absl::OkStatus();  // encloses nothing
-  if (points.row(2).maxCoeff() - points.row(2).minCoeff() > kFlat) {
+  if (points.row(2).maxCoeff() - points.row(2).minCoeff() > kOffContourPlane) {
     return origin.Error(absl::StrCat("it is not in an axial slice: z is ", points.row(2).minCoeff(), " to ",
                                      points.row(2).maxCoeff(),
                                      " mm in ContourData (3006,0050); export contours of "
@@ -105,15 +105,15 @@ absl::Status AddContour(DcmItem& item, const Origin& origin, Region& region) {
 
 // The regions of a structure set that have contours.
 struct StructureSet {
-  std::vector<Region> regions;
+  std::vector<ContouredRegion> regions;
   std::size_t skipped = 0;  // contours that are not closed
 };
 
-absl::Status ReadRegion(DcmItem& item, std::map<int, Region>& named, StructureSet& set) {
-  Region region = named[NumberOf(item, DCM_ReferencedROINumber)];
-  region.number = NumberOf(item, DCM_ReferencedROINumber);
-  Origin origin{region.number, 0};
-  absl::Status status = ForEachItem(item, DCM_ContourSequence, [&](DcmItem& contour) {
+absl::Status ReadRegion(DcmItem& item, std::map<int, ContouredRegion>& named, StructureSet& set) {
+  ContouredRegion region = named[IntegerAt(item, DCM_ReferencedROINumber)];
+  region.number = IntegerAt(item, DCM_ReferencedROINumber);
+  ContourOrigin origin{region.number, 0};
+  absl::Status status = ForEachContourItem(item, DCM_ContourSequence, [&](DcmItem& contour) {
     ++origin.contour;
     const std::string type = TextOf(&contour, DCM_ContourGeometricType);
     if (type == "CLOSED_PLANAR" || type == "CLOSEDPLANAR_XOR") return AddContour(contour, origin, region);
@@ -127,19 +127,19 @@ absl::Status ReadRegion(DcmItem& item, std::map<int, Region>& named, StructureSe
 
 absl::StatusOr<StructureSet> ReadSet(DcmDataset& dataset) {
   Utf8 in_utf8(dataset);
-  std::map<int, Region> named;
-  (void)ForEachItem(dataset, DCM_StructureSetROISequence, [&](DcmItem& item) {
-    named[NumberOf(item, DCM_ROINumber)].name = in_utf8(TextOf(&item, DCM_ROIName));
+  std::map<int, ContouredRegion> named;
+  (void)ForEachContourItem(dataset, DCM_StructureSetROISequence, [&](DcmItem& item) {
+    named[IntegerAt(item, DCM_ROINumber)].name = in_utf8(TextOf(&item, DCM_ROIName));
     return absl::OkStatus();
   });
-  (void)ForEachItem(dataset, DCM_RTROIObservationsSequence, [&](DcmItem& item) {
+  (void)ForEachContourItem(dataset, DCM_RTROIObservationsSequence, [&](DcmItem& item) {
     DcmItem* code = FirstItem(&item, DCM_RTROIIdentificationCodeSequence);
-    named[NumberOf(item, DCM_ReferencedROINumber)].meaning = in_utf8(TextOf(code, DCM_CodeMeaning));
+    named[IntegerAt(item, DCM_ReferencedROINumber)].meaning = in_utf8(TextOf(code, DCM_CodeMeaning));
     return absl::OkStatus();
   });
   StructureSet set;
   absl::Status status =
-      ForEachItem(dataset, DCM_ROIContourSequence, [&](DcmItem& item) { return ReadRegion(item, named, set); });
+      ForEachContourItem(dataset, DCM_ROIContourSequence, [&](DcmItem& item) { return ReadRegion(item, named, set); });
   if (!status.ok()) return status;
   if (!set.regions.empty()) return set;
   return absl::InvalidArgumentError(
@@ -148,21 +148,21 @@ absl::StatusOr<StructureSet> ReadSet(DcmDataset& dataset) {
 }
 
 // Returns the slices of all contours, and for each contour in the order of the regions its slice.
-absl::StatusOr<SliceStack> StackOf(const StructureSet& set) {
+absl::StatusOr<SliceStack> StackContours(const StructureSet& set) {
   std::vector<Eigen::Vector3d> positions;
   Eigen::AlignedBox2d box;
   double crossed = 0;
-  for (const Region& region : set.regions) {
+  for (const ContouredRegion& region : set.regions) {
     for (std::size_t c = 0; c < region.contours.size(); ++c) {
       const Eigen::Matrix2Xd& contour = region.contours[c];
       box.extend(Eigen::Vector2d(contour.rowwise().minCoeff())).extend(Eigen::Vector2d(contour.rowwise().maxCoeff()));
-      crossed += RowsCrossed(contour / kPixel);
+      crossed += RowsCrossed(contour / kContourPixel);
       positions.emplace_back(0, 0, region.heights[c]);
     }
   }
-  if (!(box.sizes().maxCoeff() <= kLargest)) {
+  if (!(box.sizes().maxCoeff() <= kWidestContours)) {
     return absl::InvalidArgumentError(absl::StrCat("its contours extend over ", box.sizes().maxCoeff(),
-                                                   " mm, and a thorax is smaller than ", kLargest,
+                                                   " mm, and a thorax is smaller than ", kWidestContours,
                                                    " mm (ContourData, 3006,0050); export the structures again"));
   }
   if (crossed > kMostRowsCrossed) {
@@ -172,40 +172,40 @@ absl::StatusOr<SliceStack> StackOf(const StructureSet& set) {
   }
   const auto stack_with = [&](double pixel) {
     for (Eigen::Vector3d& position : positions) {
-      position.head<2>() = box.min().array() - kMargin * pixel;
+      position.head<2>() = box.min().array() - kPixelsAround * pixel;
     }
     return StackSlices({pixel * Eigen::Vector3d::UnitX(), pixel * Eigen::Vector3d::UnitY()}, positions, 0);
   };
-  return stack_with(kPixel);
+  return stack_with(kContourPixel);
 }
 
 // Returns the number of pixels in the plane, and makes them larger if the volume has too many voxels.
 Eigen::Vector2i SizePlane(const StructureSet& set, SliceStack& stack) {
   Eigen::AlignedBox2d box;
-  for (const Region& region : set.regions) {
+  for (const ContouredRegion& region : set.regions) {
     for (const Eigen::Matrix2Xd& contour : region.contours) {
       box.extend(Eigen::Vector2d(contour.rowwise().minCoeff())).extend(Eigen::Vector2d(contour.rowwise().maxCoeff()));
     }
   }
-  double pixel = kPixel;
+  double pixel = kContourPixel;
   const auto size_with = [&](double edge) -> Eigen::Vector2d {
-    return (box.sizes() / edge).array().ceil() + 1 + 2 * kMargin;
+    return (box.sizes() / edge).array().ceil() + 1 + 2 * kPixelsAround;
   };
-  while (size_with(pixel).prod() * stack.slices > kMostOfVolume) pixel *= 1.02;
+  while (size_with(pixel).prod() * stack.slices > kMostContourVoxels) pixel *= 1.02;
   stack.to_patient.linear().col(0) = pixel * Eigen::Vector3d::UnitX();
   stack.to_patient.linear().col(1) = pixel * Eigen::Vector3d::UnitY();
-  stack.to_patient.translation().head<2>() = box.min().array() - kMargin * pixel;
+  stack.to_patient.translation().head<2>() = box.min().array() - kPixelsAround * pixel;
   return size_with(pixel).cast<int>();
 }
 
 // Fills regions of one set in one volume.
-class Filler {
+class RegionFiller {
  public:
-  Filler(const StructureSet& set, const SliceStack& stack, LabelVolume& volume) : volume_(volume) {
+  RegionFiller(const StructureSet& set, const SliceStack& stack, LabelVolume& volume) : volume_(volume) {
     std::size_t next = 0;
     const Eigen::Vector2d origin = stack.to_patient.translation().head<2>();
     const Eigen::Vector2d pixel(stack.to_patient(0, 0), stack.to_patient(1, 1));
-    for (const Region& region : set.regions) {
+    for (const ContouredRegion& region : set.regions) {
       auto& slices = slices_.emplace_back();
       for (const Eigen::Matrix2Xd& contour : region.contours) {
         slices[stack.slice_of[next++]].push_back((contour.colwise() - origin).array().colwise() / pixel.array());
@@ -238,10 +238,10 @@ class Filler {
 };
 
 // Returns the regions' labels.
-std::vector<Label> LabelsOf(const StructureSet& set) {
+std::vector<Label> RegionLabels(const StructureSet& set) {
   std::set<int> numbers;
   std::vector<Label> labels, counted;
-  for (const Region& region : set.regions) {
+  for (const ContouredRegion& region : set.regions) {
     numbers.insert(region.number);
     labels.push_back(static_cast<Label>(region.number));
     counted.push_back(static_cast<Label>(counted.size() + 1));
@@ -251,12 +251,12 @@ std::vector<Label> LabelsOf(const StructureSet& set) {
   return usable ? labels : counted;
 }
 
-void Fill(const StructureSet& set, const Filler& filler, LabelVolume& volume) {
+void FillRegions(const StructureSet& set, const RegionFiller& filler, LabelVolume& volume) {
   std::vector<std::size_t> voxels(set.regions.size(), 0), order(set.regions.size());
   for (std::size_t r = 0; r < order.size(); ++r) filler.ForEachVoxel(r, [&](std::size_t) { ++voxels[r]; });
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return voxels[a] > voxels[b]; });
-  const std::vector<Label> labels = LabelsOf(set);
+  const std::vector<Label> labels = RegionLabels(set);
   std::size_t overlaps = 0;
   for (const std::size_t r : order) {
     filler.ForEachVoxel(r, [&](std::size_t at) {
@@ -286,7 +286,7 @@ absl::StatusOr<LabelVolume> ReadRtStructures(DcmDataset& dataset) {
   if (set->regions.size() > std::numeric_limits<Label>::max()) {
     return absl::InvalidArgumentError("it has more than 65535 regions; export those of the thorax");
   }
-  absl::StatusOr<SliceStack> stack = StackOf(*set);
+  absl::StatusOr<SliceStack> stack = StackContours(*set);
   if (!stack.ok()) return stack.status();
   constexpr double kMostSlices = 1e5;
   if (stack->slices > kMostSlices)
@@ -300,7 +300,7 @@ absl::StatusOr<LabelVolume> ReadRtStructures(DcmDataset& dataset) {
                                                    "; export contours of every slice of the CT"));
   }
   volume.labels.assign(static_cast<std::size_t>(plane.x()) * plane.y() * stack->slices, 0);
-  Fill(*set, Filler(*set, *stack, volume), volume);
+  FillRegions(*set, RegionFiller(*set, *stack, volume), volume);
   return volume;
 }
 
