@@ -58,6 +58,10 @@ void AddBreath(CLI::App& command, CLI::Option* scene, BreathOptions& breath) {
       ->capture_default_str()
       ->needs(scene);
   command.add_flag("--ct", breath.ct, "also write volumes like a CT's [HU]")->needs(scene);
+  command.add_option("--texture", breath.texture, "unevenness of the lungs' density, which moves with them, for --ct")
+      ->check(NumberIn(0.0, 0.9))
+      ->capture_default_str()
+      ->needs(scene);
   command.add_flag("--field", breath.field, "also write the true displacement from phase 0 [mm, LPS], as ITK reads it")
       ->needs(scene);
   command.add_option("--dicom", breath.dicom, "also write DICOM: seg, ct (a series), stl, obj, or all but ct")

@@ -126,7 +126,7 @@ class Writer {
   }
 
   absl::Status WriteAll(double spacing_mm) {
-    study_.key += absl::StrCat(" ", spacing_mm);
+    study_.key += absl::StrCat(" ", spacing_mm, " ", options_.texture);
     Progress progress("phases", static_cast<double>(phantom_.phases()));
     nlohmann::json phases = nlohmann::json::array();
     for (std::size_t phase = 0; phase < phantom_.phases(); ++phase) {
@@ -249,7 +249,10 @@ class Writer {
                {"labels", labels},
                {"left_out_because_open", phantom_.structures().open},
                {"phases", std::move(phases)}};
-    if (options_.ct) report_["hounsfield_at_rest"] = hounsfield;
+    if (options_.ct) {
+      report_["hounsfield_at_rest"] = hounsfield;
+      report_["texture"] = options_.texture;
+    }
     if (options_.field) {
       report_["field"] =
           "mm, NIfTI intent 1007, components in LPS as ITK and ANTs read it: x + u(x) is where the tissue that is at x "
@@ -297,8 +300,8 @@ absl::Status MakeBreath(const Context& context, const BreathOptions& options, do
   }
   const absl::StatusOr<BreathRun> run = RunBreath(context, options);
   if (!run.ok()) return run.status();
-  absl::StatusOr<BreathingPhantom> phantom =
-      BreathingPhantom::Make(*run->model, run->phases, {spacing_mm, options.ct || Wants(options, "ct"), options.field});
+  absl::StatusOr<BreathingPhantom> phantom = BreathingPhantom::Make(
+      *run->model, run->phases, {spacing_mm, options.ct || Wants(options, "ct"), options.field, options.texture});
   if (!phantom.ok()) return phantom.status();
   Writer writer(context, options, *run, *phantom, out);
   if (absl::Status status = writer.WriteAll(spacing_mm); !status.ok()) return status;

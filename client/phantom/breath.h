@@ -17,6 +17,7 @@ struct BreathOptions {
   int phases = 10;   // of one breath
   double start = 0;  // time of the first phase [s]
   bool ct = false, field = false;
+  double texture = 0;              // of the lungs' density
   std::vector<std::string> dicom;  // of "seg", "ct", "stl", "obj" and "all"
 };
 

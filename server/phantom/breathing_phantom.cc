@@ -20,8 +20,9 @@ namespace {
 using fluoroscopy::Tissue;
 using imaging::LabelVolume;
 
-// Volume of lung relative to rest: at the first it has no air left, and no lung inflates beyond the second.
-constexpr double kDensest = 0.3, kThinnest = 5;
+// Least and largest volume of a place in a lung relative to the mean of the lung: beyond are bricks that a thin margin
+// tears, a few voxels in ten thousand.
+constexpr double kDensest = 0.4, kThinnest = 2.5;
 constexpr double kAround = 10, kAroundTrunk = 30;  // free space around structures, sideways with a trunk [mm]
 
 // Calls then(index of the voxel) for each voxel whose centre is inside the closed surface [m].
@@ -200,11 +201,12 @@ absl::Status BreathingPhantom::FillCt(std::size_t phase, const GoOn& go_on, Phan
   rendered.ct.assign(VoxelsOf(grid_), Rounded(kAirHounsfield));
   AddTrunk(phase, rendered);
   std::vector<std::int16_t> constant;
-  std::vector<double> at_first;  // volume in the first phase relative to that at rest
+  std::vector<double> at_first, mean;  // volume in the first phase relative to that at rest, and now to the first phase
   for (const Structure& structure : structures_.all) {
     const Points& rest = model_.bodies[structure.body].mesh.vertices;
-    at_first.push_back(SignedVolume(Placed(model_, phases_[0], structure.body), structure.triangles) /
-                       SignedVolume(rest, structure.triangles));
+    const double first = SignedVolume(Placed(model_, phases_[0], structure.body), structure.triangles);
+    at_first.push_back(first / SignedVolume(rest, structure.triangles));
+    mean.push_back(SignedVolume(Placed(model_, phases_[phase], structure.body), structure.triangles) / first);
     constant.push_back(
         Rounded(structure.tissue == Tissue::kLung ? LungHounsfield(at_first.back()) : HounsfieldOf(structure.tissue)));
   }
@@ -216,9 +218,11 @@ absl::Status BreathingPhantom::FillCt(std::size_t phase, const GoOn& go_on, Phan
     const int s = rendered.labels.labels[voxel] - 1;
     if (s < 0) continue;
     rendered.ct[voxel] = constant[s];
-    if (structures_.all[s].tissue != Tissue::kLung || !interiors_[s]->is_elastic()) continue;
-    const double ratio = at_first[s] * interiors_[s]->VolumeRatioAt(interiors_[s]->OriginOf(Place(voxel)));
-    rendered.ct[voxel] = Rounded(LungHounsfield(std::clamp(ratio, kDensest, kThinnest)));
+    if (structures_.all[s].tissue != Tissue::kLung) continue;
+    const Eigen::Vector3d origin = interiors_[s]->OriginOf(Place(voxel));
+    const double ratio = interiors_[s]->VolumeRatioAt(origin);
+    const double bounded = std::clamp(ratio, kDensest * mean[s], kThinnest * mean[s]);
+    rendered.ct[voxel] = Rounded(LungHounsfield(at_first[s] * bounded / (1 + request_.texture * GrainAt(origin))));
   }
   return absl::OkStatus();
 }

@@ -19,6 +19,9 @@ struct PhantomRequest {
   double spacing_mm = 2;  // edge of the voxels
   bool ct = false;        // volumes like a CT's
   bool field = false;     // displacement fields
+  // Unevenness of the density of lungs at rest, 0 to 0.9: the density is 1 + `texture` times GrainAt that of rest, and
+  // moves with the tissue, so that registration finds something to hold on to.
+  double texture = 0;
 };
 
 inline constexpr double kMostPhantomVoxels = 2.5e7;  // of a volume: 1.5 GB of memory with a field

@@ -4,6 +4,8 @@
 #ifndef PHRENIC_SERVER_PHANTOM_HOUNSFIELD_H_
 #define PHRENIC_SERVER_PHANTOM_HOUNSFIELD_H_
 
+#include <Eigen/Core>
+
 #include "server/fluoroscopy/attenuation.h"
 
 namespace phrenic::phantom {
@@ -20,6 +22,10 @@ double LungHounsfield(double ratio);
 // Returns the density of what a CT number is in lung [g/cm^3]: 1 + HU/1000, within 0.2 % of what LungHounsfield
 // assumed.
 inline double DensityOf(double hounsfield) { return 1 + hounsfield / 1000; }
+
+// Returns a smooth, irregular number in [-1, 1] of a place [m], with a mean near 0 and a grain of about 10 mm:
+// interpolated values at the points of a lattice. The same on every machine.
+double GrainAt(const Eigen::Vector3d& place);
 
 }  // namespace phrenic::phantom
 

@@ -170,11 +170,11 @@ TEST(RtStructures, OfPydicomAreTheLabelsThatTheirContoursWereDrawnAround) {
     GTEST_SKIP() << "nibabel, pydicom or matplotlib is not installed";
   }
   const v1::LabelMap map = *ReadLabelMap("totalsegmentator");
-  const LabelVolume volume = *MakePhantom(*FindPhantomBody("small"), {3, 0, 0, 1}, map);
+  const LabelVolume volume = *MakePhantom(*FindPhantomBody("small"), {4, 0, 0, 1}, map);
   const std::string stem = testing::TempDir() + "phrenic_rtstruct_" + std::to_string(getpid());
   std::ofstream(stem + ".nii", std::ios::binary) << WriteNifti(volume);
-  const std::string command = python + PHRENIC_SOURCE_DIR "/tests/imaging/write_structures.py " + stem + ".nii " +
-                              stem + ".dcm 5 10 12 51 97 105";
+  const std::string command =
+      python + PHRENIC_SOURCE_DIR "/tests/imaging/write_structures.py " + stem + ".nii " + stem + ".dcm 5 10 12 51";
   ASSERT_EQ(std::system(command.c_str()), 0);
   const absl::StatusOr<LabelVolume> read = ReadLabels(stem + ".dcm");
   ASSERT_TRUE(read.ok()) << read.status();
@@ -183,22 +183,21 @@ TEST(RtStructures, OfPydicomAreTheLabelsThatTheirContoursWereDrawnAround) {
     for (const auto& [number, expected] : volume.names) {
       if (name != expected) continue;
       ++found;
-      EXPECT_GT(DiceOf(*read, static_cast<Label>(label), volume, static_cast<Label>(number)), 0.9) << name;
+      EXPECT_GT(DiceOf(*read, static_cast<Label>(label), volume, static_cast<Label>(number)), 0.95) << name;
     }
   }
-  EXPECT_EQ(found, 6);
+  EXPECT_EQ(found, 4);
   std::filesystem::remove(stem + ".nii");
   std::filesystem::remove(stem + ".dcm");
 }
 
 TEST(ContourFill, HasTheAreaOfAPolygonAndIsOddEven) {
   Contour triangle(2, 3);
-  triangle << 2.2, 52.2, 2.2, 3.1, 3.1, 43.1;
+  triangle << 2.51, 52.51, 2.51, 3.51, 3.51, 43.51;
   double area = 0;
   for (const PixelRun& run : FillContours({&triangle}, {60, 60})) area += run.last - run.first + 1;
   EXPECT_NEAR(area, 1000, 20);
-  EXPECT_TRUE(FillContours({&triangle, &triangle}, {60, 60}).empty() ||
-              FillContours({&triangle, &triangle}, {60, 60}).size() < 60U);
+  EXPECT_TRUE(FillContours({&triangle, &triangle}, {60, 60}).empty());
 }
 
 }  // namespace

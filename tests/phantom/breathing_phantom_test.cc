@@ -123,6 +123,39 @@ TEST_F(Phantom, LungsKeepTheirMass) {
   }
 }
 
+TEST_F(Phantom, TheTextureOfLungsMovesWithThemAndKeepsTheirMass) {
+  absl::StatusOr<BreathingPhantom> textured = BreathingPhantom::Make(*model_, states_, {kSpacing, true, true, 0.5});
+  ASSERT_TRUE(textured.ok());
+  const PhantomPhase rest = *textured->Render(0, Go), peak = *textured->Render(1, Go);
+  for (const Structure& structure : All()) {
+    if (structure.tissue != fluoroscopy::Tissue::kLung) continue;
+    EXPECT_NEAR(Mass(structure, peak) / Mass(structure, rest), 1, 0.025) << structure.name;
+    // Correlation of the density at rest with what the field fetches, and with what is at the same place.
+    Eigen::Matrix2d moments[2] = {Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
+    for (int share = 0; share < 2; ++share) {
+      Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+      double count = 0;
+      for (std::size_t v = 0; v < rest.ct.size(); ++v) {
+        if (rest.labels.labels[v] != structure.number) continue;
+        const std::size_t x = rest.labels.size.x(), layer = x * rest.labels.size.y();
+        const Eigen::Vector3d at(static_cast<double>(v % x), static_cast<double>(v % layer / x),
+                                 static_cast<double>(v / layer));
+        const Eigen::Vector3i there =
+            (at + share * peak.field.col(static_cast<Eigen::Index>(v)) / kSpacing).array().round().cast<int>();
+        const std::size_t to = rest.labels.Index(there);
+        if (!rest.labels.Contains(there) || peak.labels.labels[to] != structure.number) continue;
+        const Eigen::Vector2d pair(rest.ct[v], peak.ct[to]);
+        sum += pair, count += 1;
+        moments[share] += pair * pair.transpose();
+      }
+      moments[share] = Eigen::Matrix2d(moments[share] / count - sum * sum.transpose() / (count * count));
+      moments[share] /= std::sqrt(moments[share](0, 0) * moments[share](1, 1));
+    }
+    EXPECT_GT(moments[1](0, 1), 0.7) << structure.name;
+    EXPECT_LT(moments[0](0, 1), 0.4) << structure.name << " without the field";
+  }
+}
+
 TEST_F(Phantom, TheFirstPhaseIsTheSceneAtRest) {
   EXPECT_EQ(rest_.time, 0);
   EXPECT_EQ(rest_.field.size(), 0);
