@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/imaging/contours/rt_structures.h"
 #include "server/imaging/dicom_file.h"
 #include "server/imaging/dicom_frames.h"
 #include "server/imaging/dicom_pixels.h"
 #include "server/imaging/dicom_text.h"
+#include "server/imaging/rt_structures.h"
 
 namespace phrenic::imaging {
 namespace {

@@ -1,5 +1,5 @@
 // Contours of RT Structure Sets as label volumes.
-#include "server/imaging/contours/rt_structures.h"
+#include "server/imaging/rt_structures.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "server/imaging/contours/rt_structures.h"
+#include "server/imaging/rt_structures.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,7 +1,7 @@
 // Reads label volumes of DICOM RT Structure Sets (PS3.3, A.19 and C.8.8), as planning systems, MIM, Velocity and 3D
 // Slicer write them.
-#ifndef PHRENIC_SERVER_IMAGING_CONTOURS_RT_STRUCTURES_H_
-#define PHRENIC_SERVER_IMAGING_CONTOURS_RT_STRUCTURES_H_
+#ifndef PHRENIC_SERVER_IMAGING_RT_STRUCTURES_H_
+#define PHRENIC_SERVER_IMAGING_RT_STRUCTURES_H_
 
 #include "absl/status/statusor.h"
 #include "server/imaging/label_volume.h"
@@ -21,4 +21,4 @@ absl::StatusOr<LabelVolume> ReadRtStructures(DcmDataset& dataset);
 
 }  // namespace phrenic::imaging
 
-#endif  // PHRENIC_SERVER_IMAGING_CONTOURS_RT_STRUCTURES_H_
+#endif  // PHRENIC_SERVER_IMAGING_RT_STRUCTURES_H_
