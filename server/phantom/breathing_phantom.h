@@ -20,7 +20,7 @@ struct PhantomRequest {
   bool ct = false;        // volumes like a CT's
   bool field = false;     // displacement fields
   // Unevenness of the density of lungs at rest, 0 to 0.9: the density is 1 + `texture` times GrainAt that of rest, and
-  // moves with the tissue, so that registration finds something to hold on to.
+  // moves with the tissue, so that registration has contrast inside lungs.
   double texture = 0;
 };
 
