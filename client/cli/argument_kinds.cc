@@ -24,7 +24,9 @@ struct KindRow {
 // The first row that fits applies.
 constexpr KindRow kKindRows[] = {
     {"--output", Kind::kChoice, "FORMAT", "table json jsonl csv"},
+    {"phantom --field", Kind::kOther, "", ""},
     {"--field", Kind::kOther, "PATH", ""},
+    {"--dicom", Kind::kChoice, "KIND,...", "seg ct stl obj all"},
     {"watch --at", Kind::kOther, "X,Y,Z", ""},
     {"--grid", Kind::kFile, "FILE", ""},
     {"--server", Kind::kOther, "HOST:PORT", ""},
@@ -69,6 +71,7 @@ constexpr KindRow kKindRows[] = {
     {"--measure", Kind::kOther, "MEASURE[:STATISTIC]", ""},
     {"--repair", Kind::kChoice, "REPAIR,...", "weld slivers fins orient all"},
     {"--labels", Kind::kFile, "NAME or FILE", ""},
+    {"phantom --out", Kind::kFile, "FILE or DIR", ""},
     {"patient --out", Kind::kFolder, "DIR", ""},
     {"register --surface", Kind::kFile, "NAME=FILE", ""},
     {"register --volume", Kind::kFile, "FILE", ""},

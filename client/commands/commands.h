@@ -30,7 +30,8 @@ CommandFunction SetUpCalibrate(CLI::App& command);
 // fit.cc: fit/ on the lungs of a scene and files of landmarks; no service. Files are written whole or not at all.
 CommandFunction SetUpRegister(CLI::App& command);
 CommandFunction SetUpFit(CLI::App& command);
-// patient.cc, phantom.cc: imaging/ on files; no service, except with `patient --serve`. Files are written whole or not
+// patient.cc, phantom.cc: imaging/ on files, and phantom/ on a run in this process; no service, except with
+// `patient --serve`. Files are written whole or not
 // at all.
 CommandFunction SetUpPatient(CLI::App& command);
 CommandFunction SetUpPhantom(CLI::App& command);

@@ -1,7 +1,6 @@
 #include "server/imaging/dicom_segmentation.h"
 
 #include <dcmtk/config/osconfig.h>
-#include <dcmtk/dcmdata/dcspchrs.h>
 #include <dcmtk/dcmdata/dctk.h>
 
 #include <algorithm>
@@ -14,6 +13,8 @@
 #include "server/imaging/dicom_file.h"
 #include "server/imaging/dicom_frames.h"
 #include "server/imaging/dicom_pixels.h"
+#include "server/imaging/dicom_text.h"
+#include "server/imaging/rt_structures.h"
 
 namespace phrenic::imaging {
 namespace {
@@ -32,21 +33,17 @@ constexpr DicomKind kOtherKinds[] = {
     {UID_EnhancedMRImageStorage, "an MRI"},
     {UID_PositronEmissionTomographyImageStorage, "a slice of a PET"},
     {UID_SecondaryCaptureImageStorage, "a secondary capture"},
-    {UID_RTStructureSetStorage, "an RT Structure Set (contours)"},
     {UID_RTDoseStorage, "an RT Dose"},
     {UID_SurfaceSegmentationStorage, "a Surface Segmentation (meshes)"},
     {UID_MediaStorageDirectoryStorage, "a DICOMDIR (a folder's table of contents)"},
 };
 
-std::string TextOf(DcmItem* item, const DcmTagKey& attribute) {
-  OFString text;
-  if (item == nullptr || item->findAndGetOFString(attribute, text).bad()) return "";
-  return {text.c_str(), text.length()};
+std::string SopClassOf(DcmFileFormat& file) {
+  std::string sop_class = TextOf(file.getDataset(), DCM_SOPClassUID);
+  return sop_class.empty() ? TextOf(file.getMetaInfo(), DCM_MediaStorageSOPClassUID) : sop_class;
 }
 
-absl::Status CheckSopClass(DcmFileFormat& file) {
-  std::string sop_class = TextOf(file.getDataset(), DCM_SOPClassUID);
-  if (sop_class.empty()) sop_class = TextOf(file.getMetaInfo(), DCM_MediaStorageSOPClassUID);
+absl::Status CheckSopClass(const std::string& sop_class) {
   if (sop_class == UID_SegmentationStorage || sop_class == kLabelMapSegmentation) return absl::OkStatus();
   std::string kind = "another kind of DICOM object";
   for (const DicomKind& other : kOtherKinds) {
@@ -56,11 +53,6 @@ absl::Status CheckSopClass(DcmFileFormat& file) {
       "it is ", kind,
       ", not a DICOM Segmentation (SEG) of the thorax; segment the CT, for example by TotalSegmentator, or "
       "convert it in 3D Slicer, and save the labels as DICOM Segmentation or NIfTI"));
-}
-
-DcmItem* FirstItem(DcmItem* item, const DcmTagKey& sequence) {
-  DcmItem* first = nullptr;
-  return item != nullptr && item->findAndGetSequenceItem(sequence, first).good() ? first : nullptr;
 }
 
 // Returns what the code of a segment's type means, followed by its modifier (laterality), which may be at the type or
@@ -74,25 +66,17 @@ std::string MeaningOf(DcmItem& segment) {
   return meaning.empty() || modifier.empty() ? meaning : absl::StrCat(meaning, " ", modifier);
 }
 
-// Returns the text in UTF-8, or as it is if the data set's character set is unknown.
-std::string InUtf8(DcmSpecificCharacterSet& characters, const std::string& text) {
-  OFString converted;
-  if (!characters || characters.convertString(text.data(), text.size(), converted).bad()) return text;
-  return {converted.c_str(), converted.length()};
-}
-
 void ReadSegments(DcmDataset& dataset, LabelVolume& volume) {
   DcmSequenceOfItems* segments = nullptr;
   if (dataset.findAndGetSequence(DCM_SegmentSequence, segments).bad() || segments == nullptr) return;
-  DcmSpecificCharacterSet characters;
-  if (DcmSpecificCharacterSet::isConversionAvailable()) characters.selectCharacterSet(dataset);
+  Utf8 in_utf8(dataset);
   DcmObject* next = nullptr;
   while ((next = segments->nextInContainer(next)) != nullptr) {
     auto& segment = static_cast<DcmItem&>(*next);
     Uint16 number = 0;
     if (segment.findAndGetUint16(DCM_SegmentNumber, number).bad() || number == 0) continue;
-    volume.names.emplace(number, InUtf8(characters, TextOf(&segment, DCM_SegmentLabel)));
-    volume.meanings.emplace(number, InUtf8(characters, MeaningOf(segment)));
+    volume.names.emplace(number, in_utf8(TextOf(&segment, DCM_SegmentLabel)));
+    volume.meanings.emplace(number, in_utf8(MeaningOf(segment)));
   }
 }
 
@@ -161,8 +145,11 @@ absl::StatusOr<LabelVolume> ParseDicomSegmentation(std::string_view name, std::s
   };
   const absl::StatusOr<DicomFile> file = ParseDicom(bytes);
   if (!file.ok()) return named(file.status());
-  if (absl::Status status = CheckSopClass(**file); !status.ok()) return named(status);
-  absl::StatusOr<LabelVolume> volume = ReadSegmentation(*(*file)->getDataset());
+  const std::string sop_class = SopClassOf(**file);
+  const bool contours = sop_class == UID_RTStructureSetStorage;
+  if (absl::Status status = contours ? absl::OkStatus() : CheckSopClass(sop_class); !status.ok()) return named(status);
+  DcmDataset& dataset = *(*file)->getDataset();
+  absl::StatusOr<LabelVolume> volume = contours ? ReadRtStructures(dataset) : ReadSegmentation(dataset);
   if (!volume.ok()) return named(volume.status());
   return volume;
 }

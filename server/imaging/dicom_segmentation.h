@@ -14,7 +14,8 @@ namespace phrenic::imaging {
 // half of the maximum is inside) or LABELMAP (8 or 16 bits). Labels are segment numbers. Frames may come in any order;
 // what has no frame is empty; where segments overlap the higher number counts, and `remarks` has how often. `names` are
 // the segments' labels, `meanings` those of their types' codes with laterality: "Upper lobe of lung Left". Pixels may
-// be uncompressed, deflated with the file, or RLE. Reads nothing that identifies a patient. INVALID_ARGUMENT "name:
+// be uncompressed, deflated with the file, or RLE. The contours of an RT Structure Set are filled
+// (rt_structures.h). Reads nothing that identifies a patient. INVALID_ARGUMENT "name:
 // ..." with problem and remedy, also for other kinds of DICOM objects. Thread-safe.
 absl::StatusOr<LabelVolume> ParseDicomSegmentation(std::string_view name, std::string_view bytes);
 
