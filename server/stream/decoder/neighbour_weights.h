@@ -1,13 +1,12 @@
 // An order of a mesh's vertices and weights that predict each vertex from earlier ones. Server and viewer compute them
-// independently, with the same bits on every machine and in every language.
-#ifndef PHRENIC_SERVER_STREAM_CODECS_NEIGHBOUR_WEIGHTS_H_
-#define PHRENIC_SERVER_STREAM_CODECS_NEIGHBOUR_WEIGHTS_H_
+// independently, with the same bits on every machine.
+#ifndef PHRENIC_SERVER_STREAM_DECODER_NEIGHBOUR_WEIGHTS_H_
+#define PHRENIC_SERVER_STREAM_DECODER_NEIGHBOUR_WEIGHTS_H_
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "server/stream/codecs/codec.h"
+#include "server/stream/decoder/rest_mesh.h"
 
 namespace phrenic::stream {
 
@@ -27,8 +26,8 @@ inline constexpr int kUnit = 4096;
 // sum. A vertex without earlier neighbours is predicted from the previous vertex. Weights are equal where the fit is
 // ill-conditioned (|w| above 4 times their sum). Computed in double, with sums, products and one division in a fixed
 // order, so that all clients round alike. Thread-safe.
-NeighbourWeights MakeNeighbourWeights(const RestShape& shape);
+NeighbourWeights MakeNeighbourWeights(const RestMesh& mesh);
 
 }  // namespace phrenic::stream
 
-#endif  // PHRENIC_SERVER_STREAM_CODECS_NEIGHBOUR_WEIGHTS_H_
+#endif  // PHRENIC_SERVER_STREAM_DECODER_NEIGHBOUR_WEIGHTS_H_

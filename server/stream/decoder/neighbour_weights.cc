@@ -1,8 +1,10 @@
-#include "server/stream/codecs/neighbour_weights.h"
+#include "server/stream/decoder/neighbour_weights.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
 
 namespace phrenic::stream {
 namespace {
@@ -14,21 +16,38 @@ using Offset = std::array<double, 3>;
 using Chosen = std::vector<int>;  // vertices
 
 // The neighbours of each vertex, ascending.
-std::vector<std::vector<int>> Beside(const RestShape& shape) {
-  std::vector<std::vector<int>> beside(shape.rest.cols());
-  for (const auto& edge : shape.edges.colwise()) {
-    if (edge[0] == edge[1]) continue;
-    beside[edge[0]].push_back(edge[1]);
-    beside[edge[1]].push_back(edge[0]);
+class Adjacency {
+ public:
+  explicit Adjacency(const RestMesh& mesh) : first_(mesh.vertices() + 1), end_(mesh.vertices()) {
+    for (std::size_t i = 0; i + 1 < mesh.edges.size(); i += 2) {
+      if (mesh.edges[i] == mesh.edges[i + 1]) continue;
+      ++first_[mesh.edges[i] + 1], ++first_[mesh.edges[i + 1] + 1];
+    }
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    std::copy_n(first_.begin(), end_.size(), end_.begin());
+    others_.resize(first_.back());
+    for (std::size_t i = 0; i + 1 < mesh.edges.size(); i += 2) {
+      if (mesh.edges[i] == mesh.edges[i + 1]) continue;
+      others_[end_[mesh.edges[i]]++] = mesh.edges[i + 1];
+      others_[end_[mesh.edges[i + 1]]++] = mesh.edges[i];
+    }
+    for (std::size_t vertex = 0; vertex < end_.size(); ++vertex) {
+      int* const first = others_.data() + first_[vertex];
+      std::sort(first, others_.data() + end_[vertex]);
+      end_[vertex] = static_cast<std::size_t>(std::unique(first, others_.data() + end_[vertex]) - others_.data());
+    }
   }
-  for (auto& vertices : beside) {
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::size_t size() const { return end_.size(); }
+  std::span<const int> operator[](std::size_t vertex) const {
+    return std::span(others_).subspan(first_[vertex], end_[vertex] - first_[vertex]);
   }
-  return beside;
-}
 
-std::vector<int> BreadthFirst(const std::vector<std::vector<int>>& beside) {
+ private:
+  std::vector<std::size_t> first_, end_;  // of each vertex in `others_`
+  std::vector<int> others_;
+};
+
+std::vector<int> BreadthFirst(const Adjacency& beside) {
   std::vector<int> order;
   std::vector<bool> seen(beside.size());
   order.reserve(beside.size());
@@ -48,7 +67,7 @@ std::vector<int> BreadthFirst(const std::vector<std::vector<int>>& beside) {
 }
 
 // Neighbours earlier in the order, then their neighbours, each once.
-Chosen Choose(const std::vector<std::vector<int>>& beside, const std::vector<int>& place, int vertex) {
+Chosen Choose(const Adjacency& beside, const std::vector<int>& place, int vertex) {
   Chosen chosen;
   const auto add = [&](int candidate) {
     if (chosen.size() == kMostNeighbours || place[candidate] >= place[vertex]) return;
@@ -81,12 +100,13 @@ Offset Fit(const std::vector<Offset>& offsets) {
 }
 
 // Rounds to units of 1/kUnit; adds the rounding error to the first.
-std::vector<std::int32_t> Weigh(const Floats& rest, int vertex, const Chosen& chosen) {
+std::vector<std::int32_t> Weigh(std::span<const float> rest, int vertex, const Chosen& chosen) {
   std::vector<Offset> offsets;
   for (const int other : chosen) {
     Offset& offset = offsets.emplace_back();
     for (int axis = 0; axis < 3; ++axis) {
-      offset[axis] = static_cast<double>(rest(axis, other)) - static_cast<double>(rest(axis, vertex));
+      offset[axis] = static_cast<double>(rest[3 * static_cast<std::size_t>(other) + axis]) -
+                     static_cast<double>(rest[3 * static_cast<std::size_t>(vertex) + axis]);
     }
   }
   const Offset c = Fit(offsets);
@@ -111,8 +131,8 @@ std::vector<std::int32_t> Weigh(const Floats& rest, int vertex, const Chosen& ch
 
 }  // namespace
 
-NeighbourWeights MakeNeighbourWeights(const RestShape& shape) {
-  const auto beside = Beside(shape);
+NeighbourWeights MakeNeighbourWeights(const RestMesh& mesh) {
+  const Adjacency beside(mesh);
   NeighbourWeights made;
   made.order = BreadthFirst(beside);
   std::vector<int> place(made.order.size());
@@ -124,7 +144,7 @@ NeighbourWeights MakeNeighbourWeights(const RestShape& shape) {
     if (chosen.empty() && i > 0) chosen.push_back(made.order[i - 1]);
     if (!chosen.empty()) {
       for (const int other : chosen) made.places.push_back(place[other]);
-      for (const std::int32_t weight : Weigh(shape.rest, vertex, chosen)) made.weights.push_back(weight);
+      for (const std::int32_t weight : Weigh(mesh.rest, vertex, chosen)) made.weights.push_back(weight);
     }
     made.first.push_back(static_cast<int>(made.places.size()));
   }
