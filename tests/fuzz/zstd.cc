@@ -13,7 +13,7 @@
 namespace {
 
 // True if the bytes are one frame of data that libzstd decompresses to `to`.
-bool Reference(const std::uint8_t* frame, std::size_t size, std::vector<std::uint8_t>& to) {
+bool LibzstdDecompresses(const std::uint8_t* frame, std::size_t size, std::vector<std::uint8_t>& to) {
   if (size < 5 || frame[0] != 0x28 || ZSTD_findFrameCompressedSize(frame, size) != size) return false;
   const std::size_t done = ZSTD_decompress(to.data(), to.size(), frame, size);
   return ZSTD_isError(done) == 0 && done == to.size();
@@ -27,7 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::uint8_t> expected(data[0] + 256U * data[1]), got(expected.size(), 0xa5);
   const std::string_view frame(reinterpret_cast<const char*>(data) + 2, size - 2);
   const char* const problem = decoder.Decompress(frame, got);
-  if (problem != nullptr || !Reference(data + 2, size - 2, expected)) return 0;
+  if (problem != nullptr || !LibzstdDecompresses(data + 2, size - 2, expected)) return 0;
   if (got != expected) std::abort();
   return 0;
 }

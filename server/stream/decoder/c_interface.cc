@@ -15,7 +15,8 @@ namespace {
 constexpr std::ptrdiff_t kMostVertices = 1 << 24, kMostEdges = 1 << 26;
 
 bool AreBelow(const std::uint32_t* indices, std::ptrdiff_t count, std::ptrdiff_t limit) {
-  return std::all_of(indices, indices + count, [limit](std::uint32_t index) { return index < static_cast<std::uint32_t>(limit); });
+  return std::all_of(indices, indices + count,
+                     [limit](std::uint32_t index) { return index < static_cast<std::uint32_t>(limit); });
 }
 
 std::string_view TextOf(const char* bytes, std::ptrdiff_t size) { return {bytes, static_cast<std::size_t>(size)}; }

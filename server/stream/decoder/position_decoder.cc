@@ -13,12 +13,12 @@ namespace {
 constexpr std::size_t kBasisHead = 16;  // step float64, number of shapes, kind of residuals
 
 // Numbers of phrenic.v1.Codec, whose header the decoder does not include; codecs/codecs.cc asserts that they are equal.
-enum Codec : int { kUnspecified = 0, kRaw = 1, kPlanes = 2, kPredicted = 3, kBasis = 4 };
+enum CodecNumber : int { kUnspecified = 0, kRaw = 1, kPlanes = 2, kPredicted = 3, kBasis = 4 };
 
 // What follows the coefficients of CODEC_BASIS.
 enum class BasisRest : std::uint32_t { kNothing = 0, kSteps = 1, kResiduals = 2 };
 
-std::vector<float> InOrder(std::span<const float> rest, const std::vector<int>& order) {
+std::vector<float> PaddedInOrder(std::span<const float> rest, const std::vector<int>& order) {
   std::vector<float> ordered(4 * order.size());
   for (std::size_t place = 0; place < order.size(); ++place) {
     std::copy_n(rest.begin() + 3 * static_cast<std::ptrdiff_t>(order[place]), 3,
@@ -35,7 +35,7 @@ PositionDecoder::PositionDecoder(std::span<const float> rest, const NeighbourWei
     : rest_(rest.begin(), rest.end()),
       order_(weights.order),
       prediction_(weights),
-      ordered_rest_(InOrder(rest, order_)) {}
+      ordered_rest_(PaddedInOrder(rest, order_)) {}
 
 void PositionDecoder::SetBasis(std::vector<float> shapes, std::size_t count) {
   shapes_ = std::move(shapes);

@@ -8,9 +8,9 @@
 namespace phrenic::stream {
 namespace {
 
-constexpr std::uint32_t kEscape = 3;       // of two bits: the number continues in the overflow
-constexpr std::size_t kLengths = 8;        // bytes of the first zstd frame, bytes of the overflow
-constexpr std::size_t kLongestNumber = 5;  // bytes of the overflow
+constexpr std::uint32_t kOverflowCode = 3;  // of two bits: the number continues in the overflow
+constexpr std::size_t kLengths = 8;         // bytes of the first zstd frame, bytes of the overflow
+constexpr std::size_t kLongestNumber = 5;   // bytes of the overflow
 
 // Zigzag encoding: 0, -1, 1, -2, ... as 0, 1, 2, 3, ...
 std::int32_t UnZigZag(std::uint32_t value) { return static_cast<std::int32_t>((value >> 1) ^ (0U - (value & 1))); }
@@ -63,7 +63,7 @@ const char* ResidualReader::Unpack(PaddedSteps& steps) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::int32_t* to = steps.data() + axis;
     const auto put = [&](std::uint32_t code) {
-      *to = code == kEscape ? UnZigZag(kEscape + overflow.Take()) : kSmall[code];
+      *to = code == kOverflowCode ? UnZigZag(kOverflowCode + overflow.Take()) : kSmall[code];
       to += 4, ++i;
     };
     const std::size_t end = (axis + 1) * places_;

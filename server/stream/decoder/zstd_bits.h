@@ -9,12 +9,12 @@
 
 namespace phrenic::stream {
 
-using Bytes = std::span<const std::uint8_t>;
+using ByteSpan = std::span<const std::uint8_t>;
 
 // Reads from the first byte on, low bits first. Beyond the end all bits are 0; `bits_read` tells.
 class ForwardBits {
  public:
-  explicit ForwardBits(Bytes bytes) : bytes_(bytes) {}
+  explicit ForwardBits(ByteSpan bytes) : bytes_(bytes) {}
 
   // Returns the next `count` bits. Requires: count <= 16.
   std::uint32_t Read(unsigned count) {
@@ -31,7 +31,7 @@ class ForwardBits {
   std::size_t bytes_read() const { return (bits_ + 7) / 8; }
 
  private:
-  Bytes bytes_;
+  ByteSpan bytes_;
   std::size_t bits_ = 0;
 };
 
@@ -41,7 +41,7 @@ class BackwardBits {
  public:
   BackwardBits() = default;
   // False if the bytes have no end mark.
-  bool Start(Bytes bytes) {
+  bool Start(ByteSpan bytes) {
     if (bytes.empty() || bytes.back() == 0) return false;
     start_ = bytes.data();
     read_ = static_cast<unsigned>(std::countl_zero(bytes.back())) + 1;

@@ -14,13 +14,13 @@ constexpr const char* kDamaged = "zstd: the frame is damaged";
 constexpr const char* kSize = "zstd: the frame has another size than it should";
 
 // Little-endian. Requires: count <= 8 and that many bytes.
-std::uint64_t NumberOf(Bytes bytes, std::size_t count) {
+std::uint64_t NumberOf(ByteSpan bytes, std::size_t count) {
   std::uint64_t value = 0;
   for (std::size_t i = 0; i < count; ++i) value |= static_cast<std::uint64_t>(bytes[i]) << 8 * i;
   return value;
 }
 
-Bytes BytesOf(std::string_view text) { return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}; }
+ByteSpan BytesOf(std::string_view text) { return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}; }
 
 struct FrameHead {
   std::size_t size = 0;  // bytes of the head
@@ -29,7 +29,7 @@ struct FrameHead {
 };
 
 // Nothing if the bytes are not the start of a frame, or the frame needs a dictionary.
-std::optional<FrameHead> ReadHead(Bytes bytes) {
+std::optional<FrameHead> ReadHead(ByteSpan bytes) {
   if (bytes.size() < 5 || NumberOf(bytes, 4) != kMagic) return std::nullopt;
   const unsigned descriptor = bytes[4];
   const bool single = (descriptor & 0x20) != 0;
@@ -106,7 +106,7 @@ std::optional<std::uint64_t> ZstdDecoder::StatedSize(std::string_view frame) {
 
 const char* ZstdDecoder::Decompress(std::string_view frame, std::span<std::uint8_t> to) {
   if (frame.empty()) return to.empty() ? nullptr : kSize;
-  const Bytes bytes = BytesOf(frame);
+  const ByteSpan bytes = BytesOf(frame);
   const auto head = ReadHead(bytes);
   if (!head.has_value()) return "zstd: the bytes are no frame, or one that needs a dictionary";
   if (head->content.has_value() && *head->content != to.size()) return kSize;
@@ -119,7 +119,7 @@ const char* ZstdDecoder::Decompress(std::string_view frame, std::span<std::uint8
   return problem == nullptr && done_ != to_.size() ? kSize : problem;
 }
 
-const char* ZstdDecoder::DecompressBlocks(Bytes blocks, bool checksum) {
+const char* ZstdDecoder::DecompressBlocks(ByteSpan blocks, bool checksum) {
   for (bool last = false; !last;) {
     if (blocks.size() < kBlockHead) return kCutOff;
     const auto head = static_cast<std::uint32_t>(NumberOf(blocks, kBlockHead));
@@ -129,7 +129,7 @@ const char* ZstdDecoder::DecompressBlocks(Bytes blocks, bool checksum) {
     const std::size_t size = head >> 3, taken = kind == 1 ? 1 : size;
     if (kind == 3 || size > kLargestBlock) return kDamaged;
     if (taken > blocks.size()) return kCutOff;
-    Bytes block = blocks.first(taken);
+    ByteSpan block = blocks.first(taken);
     blocks = blocks.subspan(taken);
     if (kind == 0 && !Append(block)) return kSize;
     if (kind == 1) {
@@ -144,7 +144,7 @@ const char* ZstdDecoder::DecompressBlocks(Bytes blocks, bool checksum) {
   return blocks.size() == (checksum ? kChecksum : 0) ? nullptr : kDamaged;
 }
 
-const char* ZstdDecoder::ReadLiterals(Bytes& block) {
+const char* ZstdDecoder::ReadLiterals(ByteSpan& block) {
   if (block.empty()) return kCutOff;
   const unsigned kind = block[0] & 3, format = block[0] >> 2 & 3;
   if (kind >= 2) return ReadHuffmanLiterals(block);
@@ -158,13 +158,13 @@ const char* ZstdDecoder::ReadLiterals(Bytes& block) {
   literals_ = block.first(taken);
   if (kind == 1) {
     std::memset(buffer_.data(), block[0], size);
-    literals_ = Bytes(buffer_).first(size);
+    literals_ = ByteSpan(buffer_).first(size);
   }
   block = block.subspan(taken);
   return nullptr;
 }
 
-const char* ZstdDecoder::ReadHuffmanLiterals(Bytes& block) {
+const char* ZstdDecoder::ReadHuffmanLiterals(ByteSpan& block) {
   const unsigned kind = block[0] & 3, format = block[0] >> 2 & 3;
   const std::size_t head = format < 2 ? 3 : format + 2;
   const unsigned width = format < 2 ? 10 : format == 2 ? 14 : 18;
@@ -174,7 +174,7 @@ const char* ZstdDecoder::ReadHuffmanLiterals(Bytes& block) {
   block = block.subspan(head);
   if (size > kLargestBlock) return kDamaged;
   if (compressed > block.size()) return kCutOff;
-  Bytes streams = block.first(compressed);
+  ByteSpan streams = block.first(compressed);
   block = block.subspan(compressed);
   if (kind == 2) {
     const std::size_t described = huffman_.Read(streams);
@@ -188,7 +188,7 @@ const char* ZstdDecoder::ReadHuffmanLiterals(Bytes& block) {
   return nullptr;
 }
 
-const char* ZstdDecoder::ReadSequences(Bytes block) {
+const char* ZstdDecoder::ReadSequences(ByteSpan block) {
   if (block.empty()) return kCutOff;
   const std::size_t head = block[0] < 128 ? 1 : block[0] < 255 ? 2 : 3;
   if (block.size() < head) return kCutOff;
@@ -207,7 +207,7 @@ const char* ZstdDecoder::ReadSequences(Bytes block) {
   return Execute(block, count);
 }
 
-const char* ZstdDecoder::ReadCode(unsigned mode, int which, Bytes& block, SequenceCode& code) {
+const char* ZstdDecoder::ReadCode(unsigned mode, int which, ByteSpan& block, SequenceCode& code) {
   const CodeKind& kind = kKinds[which];
   if (mode == 3) return code.known ? nullptr : kDamaged;
   code.known = false;
@@ -228,7 +228,7 @@ const char* ZstdDecoder::ReadCode(unsigned mode, int which, Bytes& block, Sequen
   return nullptr;
 }
 
-const char* ZstdDecoder::Execute(Bytes stream, std::uint32_t count) {
+const char* ZstdDecoder::Execute(ByteSpan stream, std::uint32_t count) {
   BackwardBits bits;
   if (!bits.Start(stream)) return kDamaged;
   const auto& [literal, offset, match] = codes_;
@@ -290,7 +290,7 @@ bool ZstdDecoder::CopyMatch(std::size_t offset, std::size_t count) {
   return true;
 }
 
-bool ZstdDecoder::Append(Bytes bytes) {
+bool ZstdDecoder::Append(ByteSpan bytes) {
   if (bytes.size() > to_.size() - done_) return false;
   if (!bytes.empty()) std::memcpy(to_.data() + done_, bytes.data(), bytes.size());
   done_ += bytes.size();

@@ -33,24 +33,24 @@ class ZstdDecoder {
     bool known = false;
   };
 
-  const char* DecompressBlocks(Bytes blocks, bool checksum);
+  const char* DecompressBlocks(ByteSpan blocks, bool checksum);
   // Both read a part of a compressed block and remove it from `block`.
-  const char* ReadLiterals(Bytes& block);
-  const char* ReadHuffmanLiterals(Bytes& block);
-  const char* ReadSequences(Bytes block);
-  const char* ReadCode(unsigned mode, int which, Bytes& block, SequenceCode& code);
-  const char* Execute(Bytes stream, std::uint32_t count);
+  const char* ReadLiterals(ByteSpan& block);
+  const char* ReadHuffmanLiterals(ByteSpan& block);
+  const char* ReadSequences(ByteSpan block);
+  const char* ReadCode(unsigned mode, int which, ByteSpan& block, SequenceCode& code);
+  const char* Execute(ByteSpan stream, std::uint32_t count);
   std::uint32_t OffsetOf(std::uint32_t value, bool no_literals);
   bool CopyLiterals(std::size_t count);
   bool CopyMatch(std::size_t offset, std::size_t count);
-  bool Append(Bytes bytes);
+  bool Append(ByteSpan bytes);
 
   std::span<std::uint8_t> to_;
   std::size_t done_ = 0;  // bytes of `to_`
   HuffmanTable huffman_;
   std::array<SequenceCode, 3> codes_;  // literal lengths, offsets, match lengths
   std::array<std::uint32_t, 3> offsets_ = {1, 4, 8};
-  Bytes literals_;  // of the block that are not copied yet
+  ByteSpan literals_;  // of the block that are not copied yet
   std::array<std::uint8_t, kLargestBlock> buffer_;
 };
 

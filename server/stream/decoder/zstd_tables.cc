@@ -9,7 +9,7 @@ constexpr std::size_t kMostWeights = 255;  // that are written; one more follows
 unsigned HighBit(std::uint32_t value) { return 31U - static_cast<unsigned>(std::countl_zero(value)); }
 
 // Reads Huffman weights that are compressed by FSE, with two states in turn. Returns their number, 0 if invalid.
-std::size_t ReadFseWeights(Bytes bytes, std::array<std::uint8_t, 256>& weights) {
+std::size_t ReadFseWeights(ByteSpan bytes, std::array<std::uint8_t, 256>& weights) {
   FseTable table;
   const std::size_t head = table.Read(bytes, kWeightsAccuracy, weights.size());
   BackwardBits bits;
@@ -31,7 +31,7 @@ std::size_t ReadFseWeights(Bytes bytes, std::array<std::uint8_t, 256>& weights) 
 }
 
 // Two weights a byte, the first in the high bits.
-void ReadPlainWeights(Bytes bytes, std::size_t count, std::array<std::uint8_t, 256>& weights) {
+void ReadPlainWeights(ByteSpan bytes, std::size_t count, std::array<std::uint8_t, 256>& weights) {
   for (std::size_t i = 0; i < count; ++i) weights[i] = bytes[i / 2] >> (i % 2 == 0 ? 4 : 0) & 15;
 }
 
@@ -68,7 +68,7 @@ void FseTable::MakeOne(std::uint8_t symbol) {
   states[0] = {.next = 0, .bits = 0, .symbol = symbol};
 }
 
-std::size_t FseTable::Read(Bytes bytes, unsigned max_accuracy, std::size_t symbols) {
+std::size_t FseTable::Read(ByteSpan bytes, unsigned max_accuracy, std::size_t symbols) {
   ForwardBits bits(bytes);
   const unsigned accuracy = bits.Read(4) + 5;
   if (accuracy > max_accuracy) return 0;
@@ -101,7 +101,7 @@ std::size_t FseTable::Read(Bytes bytes, unsigned max_accuracy, std::size_t symbo
   return bits.bytes_read();
 }
 
-std::size_t HuffmanTable::Read(Bytes bytes) {
+std::size_t HuffmanTable::Read(ByteSpan bytes) {
   log_ = 0;
   if (bytes.empty()) return 0;
   std::array<std::uint8_t, 256> weights{};
@@ -142,7 +142,7 @@ bool HuffmanTable::Make(std::array<std::uint8_t, 256>& weights, std::size_t coun
   return true;
 }
 
-bool HuffmanTable::Decode(Bytes stream, std::span<std::uint8_t> to) const {
+bool HuffmanTable::Decode(ByteSpan stream, std::span<std::uint8_t> to) const {
   BackwardBits bits;
   if (!bits.Start(stream)) return false;
   std::size_t i = 0;
@@ -162,7 +162,7 @@ bool HuffmanTable::Decode(Bytes stream, std::span<std::uint8_t> to) const {
   return bits.Finished();
 }
 
-bool HuffmanTable::DecodeFour(Bytes streams, std::span<std::uint8_t> to) const {
+bool HuffmanTable::DecodeFour(ByteSpan streams, std::span<std::uint8_t> to) const {
   constexpr std::size_t kSizes = 6;
   if (streams.size() < kSizes) return false;
   const std::size_t part = (to.size() + 3) / 4;

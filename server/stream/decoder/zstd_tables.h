@@ -25,7 +25,7 @@ struct FseTable {
   // A table of one symbol that takes no bits.
   void MakeOne(std::uint8_t symbol);
   // Reads a description. Returns its bytes, or 0 if it is invalid. `symbols`: number of symbols that may have a count.
-  std::size_t Read(Bytes bytes, unsigned max_accuracy, std::size_t symbols);
+  std::size_t Read(ByteSpan bytes, unsigned max_accuracy, std::size_t symbols);
 
   std::uint8_t symbol(std::uint32_t state) const { return states[state].symbol; }
   std::uint32_t Next(std::uint32_t state, BackwardBits& bits) const {
@@ -37,12 +37,12 @@ struct FseTable {
 class HuffmanTable {
  public:
   // Reads a description. Returns its bytes, or 0 if it is invalid; the table is then empty.
-  std::size_t Read(Bytes bytes);
+  std::size_t Read(ByteSpan bytes);
   bool empty() const { return log_ == 0; }
   // Decodes one stream into `to`. False unless the stream has exactly so many symbols.
-  bool Decode(Bytes stream, std::span<std::uint8_t> to) const;
+  bool Decode(ByteSpan stream, std::span<std::uint8_t> to) const;
   // Decodes four streams of which the first three have `to.size() + 3) / 4` symbols, and the last the rest.
-  bool DecodeFour(Bytes streams, std::span<std::uint8_t> to) const;
+  bool DecodeFour(ByteSpan streams, std::span<std::uint8_t> to) const;
 
  private:
   struct Code {

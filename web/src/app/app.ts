@@ -9,6 +9,7 @@ import { elementById } from "../dom/elements";
 import { FilmMaker, type OpenWriter } from "../film/film_maker";
 import { inPageLanguage } from "../language/page_words";
 import { recordedMotion } from "../film/recorded_motion";
+import { WorkerDecoding } from "../decoders/worker_decoding";
 import { type DisplayedFrame, FrameBuffer } from "../frames/frame_buffer";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
@@ -68,6 +69,7 @@ import { viewpointShortcuts } from "./viewpoint_shortcuts";
 import { skipLinks } from "./skip_links";
 import { StudentView } from "./student_view";
 import { testHook } from "./test_hook";
+import { t } from "../language/translate";
 
 /** Update intervals of texts and numbers, and of graphs [ms]. */
 const statusInterval = 200;
@@ -92,7 +94,9 @@ export interface PageTarget {
 
 /** One session on one page: connects the connection, the viewer and the panels. */
 export class App {
-  private readonly frames = new FrameBuffer();
+  private readonly frames = new FrameBuffer(new WorkerDecoding(), (error) =>
+    this.controller.notice.set(t("A frame cannot be shown: {0}", error.message)),
+  );
   private readonly layerStyles = new LayerStyles();
   private readonly report = new Signal<CompileReport | undefined>(undefined);
   private readonly presets = new Signal<Preset[]>([]);

@@ -5,6 +5,7 @@ import { VertexColorizer } from "../appearance/vertex_colorizer";
 import type { Api } from "../connection/api";
 import { type ConnectionListener, SessionConnection } from "../connection/session_connection";
 import { make } from "../dom/elements";
+import { WorkerDecoding } from "../decoders/worker_decoding";
 import { FrameBuffer, maxWait } from "../frames/frame_buffer";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { type Preset } from "../gen/phrenic/v1/scene_pb";
@@ -52,7 +53,9 @@ export class SecondView {
   private readonly viewer: Viewer;
   private readonly controller: SessionController;
   private readonly connection: SessionConnection;
-  private readonly frames = new FrameBuffer();
+  private readonly frames = new FrameBuffer(new WorkerDecoding(), (error) =>
+    this.controller.notice.set(t("A frame cannot be shown: {0}", error.message)),
+  );
   private readonly forces: ForceQueries;
   private readonly lungs: LungTissue;
   private readonly colorizer: VertexColorizer;
