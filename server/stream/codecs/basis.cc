@@ -96,9 +96,7 @@ absl::StatusOr<std::string> BasisCodec::Encode(const Floats& positions, double m
 
 absl::StatusOr<Floats> BasisCodec::Decode(std::string_view bytes) const {
   PositionDecoder decoder(MeshOf(shape_).rest, predictor_.weights());
-  std::vector<float> shapes;
-  for (const Floats& shape : shape_.shapes) shapes.insert(shapes.end(), shape.data(), shape.data() + shape.size());
-  decoder.SetBasis(std::move(shapes), shape_.shapes.size());
+  decoder.SetBasis(JoinShapes(shape_.shapes), shape_.shapes.size());
   return DecodeBy(decoder, v1::CODEC_BASIS, bytes);
 }
 

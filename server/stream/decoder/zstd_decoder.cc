@@ -134,7 +134,7 @@ const char* ZstdDecoder::DecompressBlocks(ByteSpan blocks, bool checksum) {
     if (kind == 0 && !Append(block)) return kSize;
     if (kind == 1) {
       if (size > to_.size() - done_) return kSize;
-      std::memset(to_.data() + done_, block[0], size);
+      std::fill_n(to_.begin() + static_cast<std::ptrdiff_t>(done_), size, block[0]);
       done_ += size;
     }
     if (kind != 2) continue;
@@ -157,7 +157,7 @@ const char* ZstdDecoder::ReadLiterals(ByteSpan& block) {
   if (taken > block.size()) return kCutOff;
   literals_ = block.first(taken);
   if (kind == 1) {
-    std::memset(buffer_.data(), block[0], size);
+    std::fill_n(buffer_.begin(), size, block[0]);
     literals_ = ByteSpan(buffer_).first(size);
   }
   block = block.subspan(taken);
