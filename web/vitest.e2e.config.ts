@@ -8,7 +8,7 @@ export default defineConfig(({ mode }) => ({
     dir: "../tests/e2e",
     env: { PHRENIC_CACHE: resolve(import.meta.dirname, "../build/meshes") },
     include: [
-      ({ screenshot: "screenshot.ts", bench: "decoding_bench.ts" } as Record<string, string>)[mode] ?? "**/*.test.ts",
+      ({ screenshot: "screenshot.ts", bench: "bench/decoding.ts" } as Record<string, string>)[mode] ?? "**/*.test.ts",
     ],
     testTimeout: 120_000,
     hookTimeout: 120_000,

@@ -9,8 +9,7 @@ import { elementById } from "../dom/elements";
 import { FilmMaker, type OpenWriter } from "../film/film_maker";
 import { inPageLanguage } from "../language/page_words";
 import { recordedMotion } from "../film/recorded_motion";
-import { WorkerDecoding } from "../decoders/worker_decoding";
-import { type DisplayedFrame, FrameBuffer } from "../frames/frame_buffer";
+import type { DisplayedFrame, FrameBuffer } from "../frames/frame_buffer";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
@@ -64,12 +63,12 @@ import { Fluoroscopy } from "./fluoroscopy";
 import { stageInsets } from "./insets";
 import { SceneTools } from "./scene_tools";
 import { SecondView } from "./second_view";
+import { sessionFrames } from "./session_frames";
 import { shortcuts } from "./shortcuts";
 import { viewpointShortcuts } from "./viewpoint_shortcuts";
 import { skipLinks } from "./skip_links";
 import { StudentView } from "./student_view";
 import { testHook } from "./test_hook";
-import { t } from "../language/translate";
 
 /** Update intervals of texts and numbers, and of graphs [ms]. */
 const statusInterval = 200;
@@ -94,9 +93,7 @@ export interface PageTarget {
 
 /** One session on one page: connects the connection, the viewer and the panels. */
 export class App {
-  private readonly frames = new FrameBuffer(new WorkerDecoding(), (error) =>
-    this.controller.notice.set(t("A frame cannot be shown: {0}", error.message)),
-  );
+  private readonly frames = sessionFrames(() => this.controller);
   private readonly layerStyles = new LayerStyles();
   private readonly report = new Signal<CompileReport | undefined>(undefined);
   private readonly presets = new Signal<Preset[]>([]);

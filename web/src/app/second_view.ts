@@ -5,8 +5,7 @@ import { VertexColorizer } from "../appearance/vertex_colorizer";
 import type { Api } from "../connection/api";
 import { type ConnectionListener, SessionConnection } from "../connection/session_connection";
 import { make } from "../dom/elements";
-import { WorkerDecoding } from "../decoders/worker_decoding";
-import { FrameBuffer, maxWait } from "../frames/frame_buffer";
+import { type FrameBuffer, maxWait } from "../frames/frame_buffer";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { type Preset } from "../gen/phrenic/v1/scene_pb";
 import { type Session, SessionState } from "../gen/phrenic/v1/session_pb";
@@ -20,6 +19,7 @@ import type { Signal } from "../state/signal";
 import type { Clock } from "../timing/clock";
 import type { Annotations } from "../viewer/annotations";
 import { Viewer, type ViewerHost } from "../viewer/viewer";
+import { sessionFrames } from "./session_frames";
 import { namedAnnotations } from "./named_scene";
 import type { SceneTools } from "./scene_tools";
 import { t } from "../language/translate";
@@ -53,9 +53,7 @@ export class SecondView {
   private readonly viewer: Viewer;
   private readonly controller: SessionController;
   private readonly connection: SessionConnection;
-  private readonly frames = new FrameBuffer(new WorkerDecoding(), (error) =>
-    this.controller.notice.set(t("A frame cannot be shown: {0}", error.message)),
-  );
+  private readonly frames = sessionFrames(() => this.controller);
   private readonly forces: ForceQueries;
   private readonly lungs: LungTissue;
   private readonly colorizer: VertexColorizer;

@@ -2,15 +2,15 @@ import { readdirSync } from "node:fs";
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { SessionConnection } from "../../web/src/connection/session_connection";
-import { type EncodedBasis, type EncodedFrame, FrameDecoder } from "../../web/src/decoders/frame_decoder";
-import { Codec, type Frame, Placement } from "../../web/src/gen/phrenic/v1/frames_pb";
-import type { Body } from "../../web/src/geometry/bodies";
-import { systemClock } from "../../web/src/timing/clock";
-import { decoderModules } from "../web/fakes/decoder_module";
-import { launchBrowser } from "./browser";
-import { nodeApi } from "./node_api";
-import { Server } from "./server";
+import { SessionConnection } from "../../../web/src/connection/session_connection";
+import { type EncodedBasis, type EncodedFrame, FrameDecoder } from "../../../web/src/decoders/frame_decoder";
+import { Codec, type Frame, Placement } from "../../../web/src/gen/phrenic/v1/frames_pb";
+import type { Body } from "../../../web/src/geometry/bodies";
+import { systemClock } from "../../../web/src/timing/clock";
+import { decoderModules } from "../../web/fakes/decoder_module";
+import { launchBrowser } from "../browser";
+import { nodeApi } from "../node_api";
+import { Server } from "../server";
 
 // Measures decoders on frames of a breathing thorax (npm run bench): back to back and 60 times a second, in Node.js and in
 // Chromium. PHRENIC_OLD names another checkout, with its viewer's packages and messages, whose decoders are measured too.
@@ -153,7 +153,7 @@ test("DecodingInChromium", async () => {
     return (body.edges.length > 0 ? [...body.edges] : own).map((vertex) => before + vertex);
   });
   const encoded = frames.map(({ positions }) => Buffer.from(positions).toString("base64"));
-  const assets = join(import.meta.dirname, "../../web/dist/assets");
+  const assets = join(import.meta.dirname, "../../../web/dist/assets");
   const browser = await launchBrowser();
   const page = await browser.newPage();
   await page.goto(`${server.url}?session=none`);
