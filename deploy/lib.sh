@@ -111,7 +111,7 @@ install_web() {
 build_web() {
   local page=$root/web/dist/index.html
   install_web
-  if [[ -f $page && -z $(cd "$root" && find web proto \( -name node_modules -o -name dist -o -name gen \) -prune \
+  if [[ -f $page && -z $(cd "$root" && find web proto server/stream/decoder \( -name node_modules -o -name dist -o -name gen -o -name "*.wasm" \) -prune \
     -o -newer "$page" -type f -print -quit) ]]; then
     return
   fi

@@ -51,6 +51,7 @@ function oneFile(name: string, place: string, policy: (hash: string) => string):
 export function oneFilePage(name: string, place: string, webAssembly = false): UserConfig {
   return {
     base: "./",
+    assetsInclude: ["**/*.wasm"], // which the script has inside
     plugins: [oneFile(name, place, policyOf(webAssembly))],
     build: {
       target: "es2022",

@@ -23,14 +23,14 @@ function contentSecurityPolicy(): Plugin {
   };
 }
 
-// Writes each script, style and page compressed beside itself; phrenicd serves what the browser accepts.
+// Writes each script, style, page and decoder compressed beside itself; phrenicd serves what the browser accepts.
 function compressed(): Plugin {
   return {
     name: "compressed",
     apply: "build",
     enforce: "post",
     writeBundle({ dir }, bundle) {
-      for (const name of Object.keys(bundle).filter((each) => /\.(js|css|html)$/.test(each))) {
+      for (const name of Object.keys(bundle).filter((each) => /\.(js|css|html|wasm)$/.test(each))) {
         const bytes = readFileSync(`${dir}/${name}`);
         writeFileSync(
           `${dir}/${name}.br`,
@@ -51,6 +51,7 @@ export default defineConfig({
     // What the first page shares with parts that are loaded later is one file: fewer requests, and smaller together.
     rolldownOptions: { output: { codeSplitting: { groups: [{ name: "shared", tags: ["$initial"] }] } } },
   },
+  worker: { format: "es" },
   // `npx vite` serves the sources and forwards calls to a phrenicd at this address.
   server: { proxy: { "^/(phrenic|grpc)\\.": process.env.PHRENIC_WEB ?? "http://127.0.0.1:8080" } },
 });

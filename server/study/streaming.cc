@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/mechanics/step/step.h"
 #include "server/schema/thread_cpu.h"
 #include "server/stream/basis.h"
+#include "server/stream/codecs/decode.h"
 #include "server/stream/frame.h"
 #include "server/stream/frame_encoding.h"
 #include "server/stream/rest_shape.h"
@@ -82,13 +84,20 @@ struct CodecSums {
   int held = 0;                              // number of frames that the codec could encode
 };
 
+// A codec, and the decoder of all codecs as a viewer keeps it.
+struct RoundTrip {
+  const stream::CodecRow& row;
+  std::unique_ptr<stream::Codec> codec;
+  stream::PositionDecoder& decoder;
+};
+
 // Encodes and decodes one frame. Adds nothing if the codec cannot encode it.
-absl::Status AddRoundTrip(const stream::Codec& codec, const Floats& frame, double bound, CodecSums& sums) {
+absl::Status AddRoundTrip(const RoundTrip& way, const Floats& frame, double bound, CodecSums& sums) {
   const double start = ThreadCpuSeconds();
-  const auto bytes = codec.Encode(frame, bound);
+  const auto bytes = way.codec->Encode(frame, bound);
   const double encoded = ThreadCpuSeconds();
   if (!bytes.ok()) return absl::OkStatus();
-  const auto decoded = codec.Decode(*bytes);
+  const auto decoded = stream::DecodeBy(way.decoder, way.row.codec, *bytes);
   const double end = ThreadCpuSeconds();
   if (!decoded.ok()) return decoded.status();
   const Eigen::VectorXd squares = (decoded->cast<double>() - frame.cast<double>()).colwise().squaredNorm();
@@ -109,16 +118,16 @@ std::string VerdictOf(const CodecSums& sums, double bound, std::size_t frames) {
 
 // Adds a row for one codec and bound level; `bound_level` is -1 for a codec without bounds. Adds nothing if the codec
 // could encode no frame.
-absl::Status AddCodecRow(std::string_view name, const stream::Codec& codec, int bound_level,
-                         const std::vector<Floats>& frames, v1::StreamingTable& table) {
+absl::Status AddCodecRow(const RoundTrip& way, int bound_level, const std::vector<Floats>& frames,
+                         v1::StreamingTable& table) {
   const double bound = bound_level < 0 ? 0 : 1e-3 * stream::BoundMillimetres(bound_level);
   CodecSums sums;
   for (const Floats& frame : frames) {
-    if (absl::Status status = AddRoundTrip(codec, frame, bound, sums); !status.ok()) return status;
+    if (absl::Status status = AddRoundTrip(way, frame, bound, sums); !status.ok()) return status;
   }
   if (sums.held == 0) return absl::OkStatus();
   v1::StreamingRow& row = *table.add_rows();
-  row.set_codec(std::string(name));
+  row.set_codec(std::string(way.row.name));
   if (bound_level >= 0) row.set_bound_mm(1e3 * bound);
   row.set_bytes_per_frame(sums.bytes / sums.held);
   row.set_mbit_per_second(8e-6 * kFramesPerSecond * row.bytes_per_frame());
@@ -165,17 +174,17 @@ absl::StatusOr<v1::StreamingTable> StudyStreaming(const v1::CreateStudyRequest& 
   table.set_basis_bytes(*basis_bytes);
   table.set_vertices(frames->shape.rest.cols());
   table.set_frames(request.streaming().frames());
+  const auto decoder = stream::MakeDecoder(frames->shape);
   const std::size_t codecs = stream::Codecs().size();
   for (std::size_t i = 0; i < codecs; ++i) {
     const stream::CodecRow& each = stream::Codecs()[i];
-    const auto codec = each.make(frames->shape);
+    const RoundTrip way = {.row = each, .codec = each.make(frames->shape), .decoder = *decoder};
     const bool bounded = each.codec != v1::CODEC_RAW;
     for (int bound_level = bounded ? 0 : -1; bound_level <= (bounded ? stream::kCoarsestBoundLevel : -1);
          ++bound_level) {
       const double done = kRunEnd + (1 - kRunEnd) * static_cast<double>(i) / static_cast<double>(codecs);
       if (!progress(done, absl::StrCat("encoding with ", std::string(each.name)))) return Cancelled();
-      if (absl::Status status = AddCodecRow(each.name, *codec, bound_level, frames->measured, table); !status.ok())
-        return status;
+      if (absl::Status status = AddCodecRow(way, bound_level, frames->measured, table); !status.ok()) return status;
     }
   }
   MarkPareto(table);

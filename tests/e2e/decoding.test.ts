@@ -5,6 +5,7 @@ import { FrameDecoder } from "../../web/src/decoders/frame_decoder";
 import { Codec, type Frame } from "../../web/src/gen/phrenic/v1/frames_pb";
 import { type Body, type FrameArrays } from "../../web/src/geometry/bodies";
 import { systemClock } from "../../web/src/timing/clock";
+import { decoderModule } from "../web/fakes/decoder_module";
 import { nodeApi } from "./node_api";
 import { Server } from "./server";
 
@@ -27,13 +28,13 @@ function worst({ positions: a }: FrameArrays, { positions: b }: FrameArrays): nu
 /** Watches the thorax with one codec until `until` returns true. */
 async function follow(codec: Codec, until: (frame: Frame, decoder: FrameDecoder) => boolean): Promise<void> {
   const api = nodeApi(server.url);
-  let decoder = new FrameDecoder([]);
+  let decoder = new FrameDecoder(decoderModule(), []);
   let done = false;
   const listener = {
     state: () => {},
     session: () => {},
     acknowledged: () => {},
-    scene: (bodies: Body[]) => void (decoder = new FrameDecoder(bodies)),
+    scene: (bodies: Body[]) => void (decoder = new FrameDecoder(decoderModule(), bodies)),
     basis: (basis: Parameters<FrameDecoder["addBasis"]>[0]) => decoder.addBasis(basis),
     frame: (frame: Frame) => void (done ||= until(frame, decoder)),
   };
@@ -49,7 +50,7 @@ async function follow(codec: Codec, until: (frame: Frame, decoder: FrameDecoder)
 /** Returns the CPU time to decode one frame of this codec [ms], after warm-up. */
 async function decodingTime(codec: Coded): Promise<number> {
   const frames: Frame[] = [];
-  let decoder = new FrameDecoder([]);
+  let decoder = new FrameDecoder(decoderModule(), []);
   await follow(codec, (frame, used) => {
     decoder = used;
     if (frame.codec === codec) frames.push(frame);

@@ -2,8 +2,10 @@ import { connect, createServer } from "node:net";
 import { setTimeout as sleep } from "node:timers/promises";
 import { afterAll, beforeAll, expect, test } from "vitest";
 import { SessionConnection } from "../../web/src/connection/session_connection";
+import { ImmediateDecoding } from "../../web/src/decoders/decoding";
 import { FrameBuffer } from "../../web/src/frames/frame_buffer";
 import { systemClock } from "../../web/src/timing/clock";
+import { decoderModule } from "../web/fakes/decoder_module";
 import { nodeApi } from "./node_api";
 import { Server } from "./server";
 
@@ -38,7 +40,7 @@ async function slowLine(url: string, bytesPerSecond: number): Promise<{ url: str
 // Watches the session for `seconds` with the viewer's connection but without drawing.
 async function watch(url: string, seconds: number) {
   const api = nodeApi(url);
-  const frames = new FrameBuffer();
+  const frames = new FrameBuffer(new ImmediateDecoding(decoderModule()), () => {});
   const ages: number[] = [];
   let last = 0;
   const connection = new SessionConnection(

@@ -1,9 +1,10 @@
-// Any bytes decoded by any codec give finite positions or an error. The first byte selects the codec.
-#include "server/stream/codecs/codec.h"
-
+// Any bytes decoded by any codec give finite positions or an error: by the decoder that viewers have in WebAssembly.
+// The first byte selects the codec.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+
+#include "server/stream/codecs/decode.h"
 
 namespace {
 
@@ -24,14 +25,11 @@ phrenic::stream::RestShape Strip() {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const auto& codecs = *new auto([] {
-    std::vector<std::unique_ptr<phrenic::stream::Codec>> made;
-    for (const auto& row : phrenic::stream::Codecs()) made.push_back(row.make(Strip()));
-    return made;
-  }());
+  static auto& decoder = *phrenic::stream::MakeDecoder(Strip()).release();
   if (size == 0) return 0;
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
-  const auto positions = codecs[data[0] % codecs.size()]->Decode(bytes);
+  const auto codecs = phrenic::stream::Codecs();
+  const auto positions = phrenic::stream::DecodeBy(decoder, codecs[data[0] % codecs.size()].codec, bytes);
   if (positions.ok() && !positions->allFinite()) std::abort();
   return 0;
 }

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <optional>
 
+#include "server/stream/codecs/decode.h"
 #include "server/stream/codecs/quantise.h"
 #include "server/stream/codecs/wire.h"
 
 namespace phrenic::stream {
 namespace {
 
-constexpr std::size_t kBasisHead = 16;  // step float64, number of shapes, kind of residuals
-constexpr double kRidge = 1e-9;         // of the shapes' mean square: shapes may be equal on selected bodies
+constexpr double kRidge = 1e-9;  // of the shapes' mean square: shapes may be equal on selected bodies
 
 // What follows the coefficients.
 enum class Rest : std::uint32_t { kNothing = 0, kAsItIs = 1, kForetold = 2 };
@@ -35,8 +35,6 @@ std::optional<Steps> StepsFrom(const Eigen::Matrix3Xd& sum, const Floats& positi
 }
 
 std::ptrdiff_t Zeros(const Steps& steps) { return std::count(steps.begin(), steps.end(), 0); }
-
-absl::Status BadBasis(const char* what) { return absl::InvalidArgumentError(std::string("basis: ") + what); }
 
 }  // namespace
 
@@ -97,29 +95,9 @@ absl::StatusOr<std::string> BasisCodec::Encode(const Floats& positions, double m
 }
 
 absl::StatusOr<Floats> BasisCodec::Decode(std::string_view bytes) const {
-  const std::size_t head = kBasisHead + sizeof(float) * shape_.shapes.size();
-  if (bytes.size() < head) return BadBasis("the head is cut off");
-  const double step = Read<double>(bytes, 0);
-  if (!IsGridStep(step)) return BadBasis("the step is not within 0 to 1 m");
-  if (Read<std::uint32_t>(bytes, 8) != shape_.shapes.size()) return BadBasis("it is of another number of shapes");
-  const auto rest = static_cast<Rest>(Read<std::uint32_t>(bytes, 12));
-  if (rest > Rest::kForetold) return BadBasis("nobody knows what follows");
-  Parts parts;
-  for (std::size_t at = kBasisHead; at < head; at += sizeof(float)) parts.push_back(Read<float>(bytes, at));
-  Doubles sum = Sum(parts);
-  if (rest == Rest::kNothing && bytes.size() != head) return BadBasis("more follows than was said");
-  if (rest != Rest::kNothing) {
-    auto steps = ReadResiduals(bytes.substr(head), predictor_.order().size());
-    if (!steps.ok()) return steps.status();
-    if (rest == Rest::kForetold) *steps = predictor_.Sums(*steps);
-    for (std::size_t place = 0; place < predictor_.order().size(); ++place) {
-      const int vertex = predictor_.order()[place];
-      for (int axis = 0; axis < 3; ++axis) sum(axis, vertex) += step * (*steps)[3 * place + axis];
-    }
-  }
-  Floats positions = sum.cast<float>();
-  if (!positions.allFinite()) return BadBasis("a number is not finite");
-  return positions;
+  PositionDecoder decoder(MeshOf(shape_).rest, predictor_.weights());
+  decoder.SetBasis(JoinShapes(shape_.shapes), shape_.shapes.size());
+  return DecodeBy(decoder, v1::CODEC_BASIS, bytes);
 }
 
 }  // namespace phrenic::stream

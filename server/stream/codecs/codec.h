@@ -11,6 +11,7 @@
 #include "absl/status/statusor.h"
 #include "phrenic/v1/frames.pb.h"
 #include "server/mesh/mesh.h"
+#include "server/stream/decoder/rest_mesh.h"
 
 namespace phrenic::stream {
 
@@ -24,6 +25,12 @@ struct RestShape {
   std::vector<Floats> shapes = {};  // displacement shapes of CODEC_BASIS [m]
 };
 
+// The rest shape as the decoder takes it. It refers to `shape`.
+inline RestMesh MeshOf(const RestShape& shape) {
+  return {.rest = {shape.rest.data(), static_cast<std::size_t>(shape.rest.size())},
+          .edges = {shape.edges.data(), static_cast<std::size_t>(shape.edges.size())}};
+}
+
 // An encoding needs only the rest shape, no other frame. Immutable; thread-safe.
 class Codec {
  public:
@@ -32,7 +39,8 @@ class Codec {
   // are finite, 3 x the vertices at rest. OUT_OF_RANGE if the codec cannot meet the bound: the positions span too large
   // a range, or the bound is finer than float32.
   virtual absl::StatusOr<std::string> Encode(const Floats& positions, double max_error) const = 0;
-  // Returns finite positions for any bytes, or INVALID_ARGUMENT if they do not encode that number of vertices.
+  // Returns finite positions for any bytes, or INVALID_ARGUMENT if they do not encode that number of vertices: by the
+  // decoder of viewers (decoder/position_decoder.h), which is set up in each call.
   virtual absl::StatusOr<Floats> Decode(std::string_view bytes) const = 0;
 };
 

@@ -1,21 +1,14 @@
 #include "server/stream/codecs/planes.h"
 
-#include <cstring>
-
 #include "server/stream/codecs/quantise.h"
 #include "server/stream/codecs/wire.h"
 #include "server/stream/codecs/zstd.h"
+#include "server/stream/decoder/plain_decoders.h"
 
 namespace phrenic::stream {
 namespace {
 
 constexpr double kMost = 65535;
-
-struct Head {
-  double step = 0;  // [m]
-  float corner[3] = {0, 0, 0};
-};
-constexpr std::size_t kPlanesHead = sizeof(double) + 3 * sizeof(float);
 
 }  // namespace
 
@@ -44,23 +37,11 @@ absl::StatusOr<std::string> PlanesCodec::Encode(const Floats& positions, double 
 }
 
 absl::StatusOr<Floats> PlanesCodec::Decode(std::string_view bytes) const {
-  if (bytes.size() < kPlanesHead) return absl::InvalidArgumentError("planes: the head is cut off");
-  const Head head = {.step = Read<double>(bytes, 0),
-                     .corner = {Read<float>(bytes, 8), Read<float>(bytes, 12), Read<float>(bytes, 16)}};
-  if (!IsGridStep(head.step)) return absl::InvalidArgumentError("planes: the step is not within 0 to 1 m");
   Floats positions(3, vertices_);
-  const std::ptrdiff_t count = positions.size();
-  const auto planes = Decompress(bytes.substr(kPlanesHead), 2 * static_cast<std::size_t>(count));
-  if (!planes.ok()) return planes.status();
-  std::ptrdiff_t place = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (Eigen::Index i = 0; i < vertices_; ++i, ++place) {
-      const unsigned low = static_cast<unsigned char>((*planes)[place]);
-      const unsigned high = static_cast<unsigned char>((*planes)[place + count]);
-      positions(axis, i) = static_cast<float>(head.corner[axis] + head.step * (low + 256 * high));
-    }
-  }
-  if (!positions.allFinite()) return absl::InvalidArgumentError("planes: a number is not finite");
+  const auto zstd = std::make_unique<ZstdDecoder>();
+  std::vector<std::uint8_t> planes;
+  const std::span<float> to(positions.data(), static_cast<std::size_t>(positions.size()));
+  if (const char* problem = DecodePlanes(bytes, *zstd, planes, to)) return absl::InvalidArgumentError(problem);
   return positions;
 }
 

@@ -1,5 +1,6 @@
 #include "server/stream/codecs/predicted.h"
 
+#include "server/stream/codecs/decode.h"
 #include "server/stream/codecs/quantise.h"
 #include "server/stream/codecs/wire.h"
 
@@ -38,20 +39,12 @@ absl::StatusOr<std::string> PredictedCodec::Encode(const Floats& positions, doub
 }
 
 absl::StatusOr<Floats> PredictedCodec::Decode(std::string_view bytes) const {
-  if (bytes.size() < sizeof(double)) return absl::InvalidArgumentError("predicted: the head is cut off");
-  const double step = Read<double>(bytes, 0);
-  if (!IsGridStep(step)) return absl::InvalidArgumentError("predicted: the step is not within 0 to 1 m");
-  const auto residuals = ReadResiduals(bytes.substr(sizeof(double)), static_cast<std::size_t>(rest_.cols()));
-  if (!residuals.ok()) return residuals.status();
-  const Steps displacements = predictor_.Sums(*residuals);
-  Floats positions(3, rest_.cols());
+  Floats rest(3, rest_.cols());
   for (int place = 0; place < static_cast<int>(rest_.cols()); ++place) {
-    for (int axis = 0; axis < 3; ++axis) {
-      positions(axis, predictor_.order()[place]) =
-          static_cast<float>(static_cast<double>(rest_(axis, place)) + step * displacements[3 * place + axis]);
-    }
+    rest.col(predictor_.order()[place]) = rest_.col(place);
   }
-  return positions;
+  PositionDecoder decoder({rest.data(), static_cast<std::size_t>(rest.size())}, predictor_.weights());
+  return DecodeBy(decoder, v1::CODEC_PREDICTED, bytes);
 }
 
 }  // namespace phrenic::stream

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "server/stream/codecs/codec.h"
+#include "server/stream/decoder/grid_step.h"
 
 namespace phrenic::stream {
 
@@ -17,11 +18,6 @@ inline std::optional<double> GridStep(const Floats& positions, double max_error)
   if (!(rounding <= max_error / 2)) return std::nullopt;
   return 2 / std::sqrt(3.0) * (max_error - rounding);
 }
-
-inline constexpr double kLargestStep = 1;  // [m]: decoders accept steps in (0, kLargestStep]
-
-// True for a step that decoders accept: 2^31 steps are then finite as float32.
-inline bool IsGridStep(double step) { return step > 0 && step <= kLargestStep; }
 
 }  // namespace phrenic::stream
 

@@ -1,9 +1,7 @@
 #include "server/stream/codecs/raw.h"
 
-#include <cstring>
-
-#include "absl/strings/str_cat.h"
 #include "server/stream/codecs/wire.h"
+#include "server/stream/decoder/plain_decoders.h"
 
 namespace phrenic::stream {
 
@@ -15,13 +13,8 @@ absl::StatusOr<std::string> RawCodec::Encode(const Floats& positions, double /*m
 
 absl::StatusOr<Floats> RawCodec::Decode(std::string_view bytes) const {
   Floats positions(3, vertices_);
-  const std::size_t size = sizeof(float) * static_cast<std::size_t>(positions.size());
-  if (bytes.size() != size) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("positions: ", bytes.size(), " bytes, but ", vertices_, " vertices have ", size));
-  }
-  if (size > 0) std::memcpy(positions.data(), bytes.data(), size);
-  if (!positions.allFinite()) return absl::InvalidArgumentError("positions: a number is not finite");
+  const std::span<float> to(positions.data(), static_cast<std::size_t>(positions.size()));
+  if (const char* problem = DecodeRaw(bytes, to)) return absl::InvalidArgumentError(problem);
   return positions;
 }
 

@@ -2,19 +2,14 @@
 #ifndef PHRENIC_SERVER_STREAM_CODECS_WIRE_H_
 #define PHRENIC_SERVER_STREAM_CODECS_WIRE_H_
 
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "server/mesh/mesh.h"
+#include "server/stream/decoder/read_number.h"
 
 namespace phrenic::stream {
-
-// Numbers are copied without conversion.
-static_assert(std::endian::native == std::endian::little, "the wire is little-endian: swap the bytes here");
 
 // Appends x, y, z of each column as float32.
 inline void AppendFloats(const Eigen::Ref<const Eigen::MatrixXf>& values, std::string& bytes) {
@@ -39,14 +34,6 @@ void Append(Number value, std::string& bytes) {
 }
 
 inline void AppendIndex(int index, std::string& bytes) { Append(static_cast<std::uint32_t>(index), bytes); }
-
-// Returns the number at `offset`. Requires: offset + sizeof(Number) <= bytes.size().
-template <class Number>
-Number Read(std::string_view bytes, std::size_t offset) {
-  Number value;
-  std::memcpy(&value, bytes.data() + offset, sizeof value);
-  return value;
-}
 
 }  // namespace phrenic::stream
 

@@ -2,10 +2,7 @@ import { create } from "@bufbuild/protobuf";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, test } from "vitest";
-import { decodeShapes } from "../../../web/src/decoders/basis";
-import { makeDecoder } from "../../../web/src/decoders/decoder_table";
 import { FrameDecoder } from "../../../web/src/decoders/frame_decoder";
-import { restShapeOf } from "../../../web/src/decoders/rest_shape";
 import {
   Codec,
   FrameSchema,
@@ -15,6 +12,7 @@ import {
 } from "../../../web/src/gen/phrenic/v1/frames_pb";
 import type { Body } from "../../../web/src/geometry/bodies";
 import { decodeBody } from "../../../web/src/geometry/bodies";
+import { decoderModule, decoderModules } from "../fakes/decoder_module";
 import { bytesOf, triangleBody } from "../fakes/fake_server";
 
 interface Golden {
@@ -40,23 +38,30 @@ const sheet: Body = decodeBody(
 
 const basis = create(GetBasisResponseSchema, { epoch: 1n, shapes: golden.shapes.map(({ bytes }) => bytesIn(bytes)) });
 
-function decode(codec: Codec, positions: Uint8Array) {
-  const decoder = new FrameDecoder([sheet]);
+/** Returns a function that decodes positions of the sheet, always with the same decoder. */
+function decodeWith(module: WebAssembly.Module, codec: Codec) {
+  const decoder = new FrameDecoder(module, [sheet]);
   decoder.addBasis(basis);
   const basisEpoch = codec === Codec.BASIS ? 1n : 0n;
-  return decoder.decode(create(FrameSchema, { codec, positions, bodies: [0], basisEpoch })).positions;
+  return (positions: Uint8Array) =>
+    decoder.decode(create(FrameSchema, { codec, positions, bodies: [0], basisEpoch })).positions;
 }
 
-describe.each(golden.encodings)("$codec", ({ codec, bytes, positions }) => {
+const cases = [...decoderModules].flatMap(([build, module]) =>
+  golden.encodings.map((encoding) => ({ build, module, ...encoding })),
+);
+
+describe.each(cases)("$codec by $build", ({ module, codec, bytes, positions }) => {
   test("PositionsAreThoseInTheFileBitForBit", () => {
-    expect([...decode(codecOf(codec), bytesIn(bytes))]).toEqual([...Float32Array.from(positions)]);
+    expect([...decodeWith(module, codecOf(codec))(bytesIn(bytes))]).toEqual([...Float32Array.from(positions)]);
   });
 
   test("InvalidBytesThrowRangeError", () => {
     const whole = bytesIn(bytes);
+    const decode = decodeWith(module, codecOf(codec));
     const outcome = (changed: Uint8Array) => {
       try {
-        return decode(codecOf(codec), changed).length;
+        return decode(changed).length;
       } catch (error) {
         expect(error).toBeInstanceOf(RangeError);
         return 0;
@@ -70,6 +75,7 @@ describe.each(golden.encodings)("$codec", ({ codec, bytes, positions }) => {
         expect([0, golden.rest.length]).toContain(outcome(flipped));
       }
     }
+    expect([...decode(whole)]).toEqual([...Float32Array.from(positions)]);
   });
 });
 
@@ -79,8 +85,9 @@ test("TheFileContainsEveryCodec", () => {
 });
 
 test("ShapesAreThoseInTheFileBitForBit", () => {
-  const predicted = makeDecoder(Codec.PREDICTED, restShapeOf([sheet]));
-  const shapes = decodeShapes(sheet.rest, predicted, basis.shapes);
+  const shapes = golden.shapes.map(({ bytes }) =>
+    decodeWith(decoderModule(), Codec.PREDICTED)(bytesIn(bytes)).map((x, i) => x - sheet.rest[i]),
+  );
   expect(shapes.map((each) => [...each])).toEqual(
     golden.shapes.map(({ displacements }) => [...Float32Array.from(displacements)]),
   );
@@ -88,7 +95,7 @@ test("ShapesAreThoseInTheFileBitForBit", () => {
 
 test("AFrameOfAnUnknownBasisIsRefused", () => {
   const frame = create(FrameSchema, { codec: Codec.BASIS, bodies: [0], basisEpoch: 2n });
-  expect(() => new FrameDecoder([sheet]).decode(frame)).toThrow(
+  expect(() => new FrameDecoder(decoderModule(), [sheet]).decode(frame)).toThrow(
     "basis_epoch: the basis of epoch 2 has not been received",
   );
 });
@@ -107,7 +114,7 @@ test("ABodyUsesItsPartOfTheBasis", () => {
   const [one, other] = [0, 3].map((firstVertex) =>
     decodeBody(triangleBody({ placement: Placement.STREAMED, firstVertex })),
   );
-  const decoder = new FrameDecoder([one, other]);
+  const decoder = new FrameDecoder(decoderModule(), [one, other]);
   decoder.addBasis(create(GetBasisResponseSchema, { epoch: 3n, shapes: [allUp()] }));
   const head = new DataView(new ArrayBuffer(20));
   head.setFloat64(0, 1, true);
@@ -124,12 +131,12 @@ test("BodiesMissingInAFrameStayAtRest", () => {
   const other = decodeBody(triangleBody({ placement: Placement.STREAMED, firstVertex: 3 }));
   const moved = bytesOf(new Float32Array([9, 9, 9, 8, 8, 8, 7, 7, 7]));
   const frame = create(FrameSchema, { codec: Codec.RAW, positions: moved, bodies: [1] });
-  const { positions } = new FrameDecoder([one, other]).decode(frame);
+  const { positions } = new FrameDecoder(decoderModule(), [one, other]).decode(frame);
   expect([...positions]).toEqual([...one.rest, 9, 9, 9, 8, 8, 8, 7, 7, 7]);
 });
 
 test("AnUnknownBodyIsRefused", () => {
-  expect(() => new FrameDecoder([]).decode(create(FrameSchema, { bodies: [3] }))).toThrow(
+  expect(() => new FrameDecoder(decoderModule(), []).decode(create(FrameSchema, { bodies: [3] }))).toThrow(
     "bodies: an index is out of range, there are 0 bodies",
   );
 });

@@ -11,6 +11,7 @@ import {
 } from "../../../web/src/gen/phrenic/v1/frames_pb";
 import { decodeBody } from "../../../web/src/geometry/bodies";
 
+import { decoderModule } from "../fakes/decoder_module";
 import { triangleBody } from "../fakes/fake_server";
 
 // The server's tests pin the same files: tests/golden/frame_test.cc.
@@ -28,7 +29,7 @@ function frameInTheFile(): Frame {
 test("GoldenFrameDecodes", () => {
   const frame = frameInTheFile();
   const scene = [triangleBody({ placement: Placement.STILL }), triangleBody({})].map(decodeBody);
-  const { positions, poses } = new FrameDecoder(scene).decode(frame);
+  const { positions, poses } = new FrameDecoder(decoderModule(), scene).decode(frame);
   expect({
     sequence: Number(frame.sequence),
     tick: Number(frame.tick),

@@ -9,6 +9,7 @@ import { OfflineMotionSchema } from "../../../web/src/gen/phrenic/v1/offline_pb"
 import { filmRow } from "../../../web/src/panels/jobs/take_home";
 import type { ExportProgress, Exports } from "../../../web/src/session/exports";
 import { Signal } from "../../../web/src/state/signal";
+import { decoderModule } from "../fakes/decoder_module";
 import { bytesOf } from "../fakes/fake_server";
 import { stored } from "../fakes/stored";
 
@@ -74,7 +75,7 @@ const writer: PictureWriter = {
 function maker(): { film: FilmMaker; exports: FakeExports } {
   const exports = new FakeExports();
   const film = new FilmMaker(
-    recordedMotion(exports as unknown as Exports),
+    recordedMotion(exports as unknown as Exports, async () => decoderModule()),
     stage,
     async () => writer,
     () => supported,

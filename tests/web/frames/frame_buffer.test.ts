@@ -4,13 +4,20 @@ import { FrameBuffer } from "../../../web/src/frames/frame_buffer";
 import { AckFramesResponseSchema, Codec, FrameSchema } from "../../../web/src/gen/phrenic/v1/frames_pb";
 import { decodeBody } from "../../../web/src/geometry/bodies";
 
+import { ImmediateDecoding } from "../../../web/src/decoders/decoding";
+import { decoderModule } from "../fakes/decoder_module";
 import { triangleBody } from "../fakes/fake_server";
+
+const newBuffer = () =>
+  new FrameBuffer(new ImmediateDecoding(decoderModule()), (error) => {
+    throw error;
+  });
 
 const nanos = (milliseconds: number) => BigInt(milliseconds) * 1_000_000n;
 const answer = (milliseconds: number) => create(AckFramesResponseSchema, { unixNanos: nanos(milliseconds) });
 
 test("AgeUsesTheClockOffsetOfTheShortestRoundTrip", () => {
-  const frames = new FrameBuffer();
+  const frames = newBuffer();
   expect(frames.rate(0).age).toBeUndefined();
   frames.receive(create(FrameSchema, { unixNanos: nanos(50_000), maxErrorMm: 0.2 }), 1040);
   expect(frames.rate(1040).age).toBeUndefined();
@@ -21,7 +28,7 @@ test("AgeUsesTheClockOffsetOfTheShortestRoundTrip", () => {
 });
 
 test("FramesOlderThanASecondDoNotCount", () => {
-  const frames = new FrameBuffer();
+  const frames = newBuffer();
   for (const now of [0, 500, 1200]) frames.receive(create(FrameSchema, {}), now);
   expect(frames.rate(1300).framesPerSecond).toBe(2);
 });
@@ -33,7 +40,7 @@ function frameAt(made: number, time: number) {
 }
 
 function watched(): FrameBuffer {
-  const frames = new FrameBuffer();
+  const frames = newBuffer();
   const point = triangleBody({ restPositions: new Uint8Array(12), triangles: new Uint8Array() });
   frames.start([decodeBody(point)]);
   frames.receive(frameAt(50_000, 1), 1000);
@@ -116,4 +123,64 @@ test("APartnerFarBehindIsNotWaitedFor", () => {
   const [ahead] = pair();
   ahead.receive(frameAt(51_500, 3.2), 1500);
   expect(ahead.liveFrame(1500)?.time).toBeCloseTo(3.2, 9);
+});
+
+/** Decodes when the test says so, as a worker does. */
+class LateDecoding extends ImmediateDecoding {
+  private late: (() => void)[] = [];
+
+  override decode(...of: Parameters<ImmediateDecoding["decode"]>): void {
+    this.late.push(() => super.decode(...of));
+  }
+
+  work(): void {
+    this.late.splice(0).forEach((each) => each());
+  }
+}
+
+/** A buffer that has received frames at 1000, 1040 ... ms; the one at x is of the time x. */
+function lateBuffer(count: number) {
+  const decoding = new LateDecoding(decoderModule());
+  const errors: string[] = [];
+  const frames = new FrameBuffer(decoding, ({ message }) => errors.push(message));
+  frames.start([decodeBody(triangleBody({ restPositions: new Uint8Array(12), triangles: new Uint8Array() }))]);
+  for (let i = 0; i < count; i++) frames.receive(frameAt(50_000 + 40 * i, 1 + i), 1000 + 40 * i);
+  return { decoding, frames, errors };
+}
+
+test("WhatIsStillBeingDecodedIsDisplayedLater", () => {
+  const { decoding, frames } = lateBuffer(1);
+  expect(frames.advance(1000, false)).toBe(false);
+  expect(frames.displayed).toBeUndefined();
+  decoding.work();
+  expect(frames.advance(1010, false)).toBe(true);
+  frames.receive(frameAt(50_040, 2), 1040);
+  frames.advance(1090, false); // due is 2 or before; only 1 is decoded
+  expect(frames.displayed!.time).toBe(1);
+  decoding.work();
+  frames.advance(1100, false);
+  expect(frames.displayed!.time).toBe(2);
+});
+
+test("AReplayThatMovesWithEveryDrawingIsShown", () => {
+  const { decoding, frames } = lateBuffer(10);
+  decoding.work();
+  const shown = [2, 3, 4, 5, 6].map((time, i) => {
+    frames.replayAt(time);
+    frames.advance(1400 + 16 * i, false);
+    decoding.work(); // too late for this drawing
+    return frames.displayed?.time;
+  });
+  expect(shown.slice(1)).toEqual([2, 3, 4, 5]);
+});
+
+test("AFrameThatCannotBeDecodedIsReportedAndTheOneBeforeStays", () => {
+  const { decoding, frames, errors } = lateBuffer(2);
+  decoding.work();
+  frames.advance(1050, true);
+  frames.receive(create(FrameSchema, { unixNanos: nanos(50_080), time: 3, bodies: [0] }), 1080);
+  decoding.work();
+  frames.advance(1090, true);
+  expect(errors).toEqual(["positions: the bytes are of another number of vertices."]);
+  expect(frames.displayed!.time).toBe(2);
 });

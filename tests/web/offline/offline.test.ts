@@ -7,6 +7,7 @@ import { factsSection } from "../../../web/src/offline/facts";
 import { playback, scrubber } from "../../../web/src/offline/playback";
 import { Player } from "../../../web/src/offline/player";
 import { motionTitle } from "../../../web/src/parameters/presets";
+import { decoderModule } from "../fakes/decoder_module";
 import { bytesOf } from "../fakes/fake_server";
 import { stored } from "../fakes/stored";
 
@@ -40,7 +41,7 @@ const textOf = (of: OfflineMotion) => Buffer.from(stored(toBinary(OfflineMotionS
 
 describe("the text of a page", () => {
   test("IsReadBack", () => {
-    const read = readMotion(`\n      ${textOf(motion)}\n`);
+    const read = readMotion(decoderModule(), `\n      ${textOf(motion)}\n`);
     expect(read.scene).toBe("thorax");
     expect(read.frames.length).toBe(3);
   });
@@ -55,13 +56,13 @@ describe("the text of a page", () => {
     [textOf(motion).slice(0, 40), "zstd"],
     [textOf(create(OfflineMotionSchema, { scene: "x" })), "frames"],
   ])("ThatIsDamagedThrowsRangeError", (text, reason) => {
-    expect(() => readMotion(text)).toThrow(RangeError);
-    expect(() => readMotion(text)).toThrow(reason);
+    expect(() => readMotion(decoderModule(), text)).toThrow(RangeError);
+    expect(() => readMotion(decoderModule(), text)).toThrow(reason);
   });
 });
 
 describe("a clip", () => {
-  const clip = new Clip(motion.frames, motion.bodies);
+  const clip = new Clip(decoderModule(), motion.frames, motion.bodies);
 
   test("BeginsAtItsFirstFrame", () => {
     expect(clip.times).toEqual([0, 1, 2]);

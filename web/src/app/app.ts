@@ -10,7 +10,7 @@ import { elementById } from "../dom/elements";
 import { FilmMaker, type OpenWriter } from "../film/film_maker";
 import { inPageLanguage } from "../language/page_words";
 import { recordedMotion } from "../film/recorded_motion";
-import { type DisplayedFrame, FrameBuffer } from "../frames/frame_buffer";
+import type { DisplayedFrame, FrameBuffer } from "../frames/frame_buffer";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
 import type { Preset } from "../gen/phrenic/v1/scene_pb";
@@ -65,6 +65,7 @@ import { Fluoroscopy } from "./fluoroscopy";
 import { stageInsets } from "./insets";
 import { SceneTools } from "./scene_tools";
 import { SecondView } from "./second_view";
+import { sessionFrames } from "./session_frames";
 import { SessionReferences } from "./session_references";
 import { shortcuts } from "./shortcuts";
 import { viewpointShortcuts } from "./viewpoint_shortcuts";
@@ -100,7 +101,7 @@ export interface PageTarget {
 
 /** One session on one page: connects the connection, the viewer and the panels. */
 export class App {
-  private readonly frames = new FrameBuffer();
+  private readonly frames = sessionFrames(() => this.controller);
   private readonly layerStyles = new LayerStyles();
   private readonly report = new Signal<CompileReport | undefined>(undefined);
   private readonly presets = new Signal<Preset[]>([]);

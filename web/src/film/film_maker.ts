@@ -21,6 +21,8 @@ export type OpenWriter = (canvas: HTMLCanvasElement, rate: number) => Promise<Pi
 export interface MotionSource {
   /** Of the recording; "recording", "fetching" and "failed" are shown as those of the film. */
   progress: Signal<ExportProgress>;
+  /** Returns the compiled decoder. */
+  decoder(): Promise<WebAssembly.Module>;
   /** Returns the motion; undefined if it fails or is stopped. */
   record(): Promise<OfflineMotion | undefined>;
   stop(): void;
@@ -92,7 +94,7 @@ export class FilmMaker {
 
   /** Returns the file; undefined if it is cancelled. */
   private async film(motion: OfflineMotion, file: string, signal: AbortSignal): Promise<Blob | undefined> {
-    const clip = new Clip(motion.frames, motion.bodies);
+    const clip = new Clip(await this.source.decoder(), motion.frames, motion.bodies);
     const { scene, preset } = motionTitle(motion);
     const title = preset === "" ? scene : `${scene} · ${preset}`;
     const pictures = new Pictures(this.stage, { title, colors: this.stage.colors() });

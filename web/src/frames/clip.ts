@@ -1,6 +1,6 @@
 import { fromBinary } from "@bufbuild/protobuf";
 import { FrameDecoder } from "../decoders/frame_decoder";
-import { decompressAll } from "../decoders/zstd";
+import { decompress } from "../decoders/wasm_decoder";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import { type OfflineMotion, OfflineMotionSchema } from "../gen/phrenic/v1/offline_pb";
 import { type Body, decodeBody, type FrameArrays } from "../geometry/bodies";
@@ -10,11 +10,11 @@ import { interpolate } from "./interpolation";
 const keptFrames = 3;
 
 /**
- * Returns the motion in the text of a page: Base64 of Zstandard of an OfflineMotion. Throws RangeError if the text is no
- * motion or has no frames.
+ * Returns the motion in the text of a page: Base64 of Zstandard of an OfflineMotion. `decoder` is the compiled decoder.
+ * Throws RangeError if the text is no motion or has no frames.
  */
-export function readMotion(text: string): OfflineMotion {
-  const motion = fromBinary(OfflineMotionSchema, decompressAll(bytesOf(text)));
+export function readMotion(decoder: WebAssembly.Module, text: string): OfflineMotion {
+  const motion = fromBinary(OfflineMotionSchema, decompress(decoder, bytesOf(text)));
   if (motion.frames.length === 0) throw new RangeError("frames: the motion has no frames.");
   return motion;
 }
@@ -43,14 +43,15 @@ export class Clip {
   private readonly decoded = new Map<number, FrameArrays>();
   private shown: { time: number; arrays: FrameArrays } | undefined;
 
-  /** Throws RangeError, naming the field, for bodies that are not valid. */
+  /** `decoder` is the compiled decoder. Throws RangeError, naming the field, for bodies that are not valid. */
   constructor(
+    decoder: WebAssembly.Module,
     private readonly frames: Frame[],
     bodies: OfflineMotion["bodies"],
   ) {
     this.bodies = bodies.map(decodeBody);
     this.times = frames.map(({ time }) => time - frames[0].time);
-    this.decoder = new FrameDecoder(this.bodies);
+    this.decoder = new FrameDecoder(decoder, this.bodies);
   }
 
   /** Duration [s]. */

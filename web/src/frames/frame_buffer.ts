@@ -1,4 +1,4 @@
-import { FrameDecoder } from "../decoders/frame_decoder";
+import type { Decoding } from "../decoders/decoding";
 import type { AckFramesResponse, Frame, GetBasisResponse } from "../gen/phrenic/v1/frames_pb";
 import type { Body, FrameArrays } from "../geometry/bodies";
 import { DrawRate } from "../timing/draw_rate";
@@ -27,10 +27,14 @@ const maxMeasurements = 30;
 export const maxWait = 2;
 const maxSilence = 2000;
 
-/** A frame that is decoded when it is drawn first. */
+/** A frame that is being decoded, or was. */
 interface BufferedFrame {
   frame: Frame;
   arrays: FrameArrays | undefined;
+  /** True from when it is passed to the decoder until that drops it. */
+  requested: boolean;
+  /** Number of the arrival; undefined for a frame that is decoded again to be replayed. */
+  arrival: number | undefined;
 }
 
 /** What the viewer displays: a frame, or an interpolation between two, at `time` [s]. */
@@ -42,18 +46,28 @@ export interface DisplayedFrame {
 /** Holds the received frames: the newest one, those of the last seconds, and the one that is displayed. */
 export class FrameBuffer {
   private newest: BufferedFrame | undefined;
+  /** The newest frame that is decoded. */
+  private newestDecoded: BufferedFrame | undefined;
+  private arrivalCount = 0;
   private readonly history = new FrameHistory();
   private replayedEntry: BufferedFrame | undefined;
+  /** The last replayed frame that is decoded, which is displayed until the next one is. */
+  private replayedDecoded: BufferedFrame | undefined;
   private displayedFrame: DisplayedFrame | undefined;
   private playout = new PlayoutBuffer<BufferedFrame>();
   private readonly drawRate = new DrawRate();
   private changed = false;
   private smooth = false;
-  private decoder = new FrameDecoder([]);
   private arrived = -Infinity;
   private arrivals: number[] = [];
   private clock: { offset: number; tripTime: number }[] = [];
   private partner: FrameBuffer | undefined;
+
+  /** `failed` gets what is wrong with a frame that cannot be decoded; the frame before it stays. */
+  constructor(
+    private readonly decoding: Decoding,
+    private readonly failed: (error: RangeError) => void,
+  ) {}
 
   /** Both buffers display the same simulated time from now on, although the frames of one may arrive later. */
   synchroniseWith(other: FrameBuffer): void {
@@ -63,10 +77,11 @@ export class FrameBuffer {
 
   /** Clears everything, for another scene or server. */
   start(bodies: Body[]): void {
-    this.newest = this.displayedFrame = this.replayedEntry = undefined;
+    this.newest = this.newestDecoded = this.displayedFrame = undefined;
+    this.replayedEntry = this.replayedDecoded = undefined;
     this.history.clear();
     this.playout.clear();
-    this.decoder = new FrameDecoder(bodies);
+    this.decoding.start(bodies);
     this.arrivals = [];
     this.clock = [];
   }
@@ -74,11 +89,12 @@ export class FrameBuffer {
   /** Adds a frame that arrived at `now` [ms]. */
   receive(frame: Frame, now: number): void {
     const before = this.newest?.frame;
-    this.newest = { frame, arrays: undefined };
+    this.newest = { frame, arrays: undefined, requested: false, arrival: this.arrivalCount++ };
     this.history.add(frame);
     // A restarted run does not continue the previous one.
     if (before !== undefined && frame.time < before.time) this.playout.clear();
     this.playout.receive(this.newest, milliseconds(frame.unixNanos), now);
+    this.decode(this.newest);
     this.arrived = now;
     this.arrivals.push(now);
     this.dropOldArrivals(now);
@@ -86,7 +102,7 @@ export class FrameBuffer {
 
   /** Adds a basis that later frames refer to. */
   addBasis(basis: GetBasisResponse): void {
-    this.decoder.addBasis(basis);
+    this.decoding.addBasis(basis);
   }
 
   /** Estimates the offset of the server's clock from an acknowledgement and the times of request and response [ms]. */
@@ -135,9 +151,9 @@ export class FrameBuffer {
     return this.history.adjacentTime(by);
   }
 
-  /** Arrays of the newest frame. */
+  /** Arrays of the newest frame that is decoded. */
   get arrays(): FrameArrays | undefined {
-    return this.newest === undefined ? undefined : this.decode(this.newest);
+    return this.newestDecoded?.arrays;
   }
 
   /** The result of the last call of `advance`. */
@@ -154,30 +170,51 @@ export class FrameBuffer {
     this.smooth = !reducedMotion && this.drawRate.isFast;
     const due = this.frameDue(now);
     this.changed = due !== undefined && due.arrays !== this.displayedFrame?.arrays;
-    this.displayedFrame = due;
+    if (due !== undefined) this.displayedFrame = due;
     return this.changed;
   }
 
+  /** Returns what is due; undefined before the first frame, and while that which is due is still being decoded. */
   private frameDue(now: number): DisplayedFrame | undefined {
     const between = this.playout.at(now);
-    if (this.newest === undefined || between === undefined) return undefined;
+    const newest = this.newestDecoded;
+    if (newest === undefined || between === undefined) return undefined;
     const { replayed } = this.history;
     if (replayed !== undefined) return this.replayed(replayed);
-    const { before, after, part } = this.smooth ? between : { before: this.newest, after: this.newest, part: 0 };
+    const { before, after, part } = this.smooth ? between : { before: newest, after: newest, part: 0 };
     const time = before.frame.time + part * (after.frame.time - before.frame.time);
     const live = this.liveFrame(now);
     if (live !== undefined && live.time < time) return this.replayed(live);
-    return { time, arrays: interpolate(this.decode(before), this.decode(after), part) };
+    this.replayedEntry = this.replayedDecoded = undefined;
+    const [from, to] = [this.decode(before), this.decode(after)];
+    if (from === undefined || to === undefined) return displayOf(newest);
+    return { time, arrays: interpolate(from, to, part) };
   }
 
   /** Decodes a replayed frame again and caches it. */
-  private replayed(frame: Frame): DisplayedFrame {
-    if (this.replayedEntry?.frame !== frame) this.replayedEntry = { frame, arrays: undefined };
-    return { time: frame.time, arrays: this.decode(this.replayedEntry) };
+  private replayed(frame: Frame): DisplayedFrame | undefined {
+    if (this.replayedEntry?.frame !== frame)
+      this.replayedEntry = { frame, arrays: undefined, requested: false, arrival: undefined };
+    this.decode(this.replayedEntry);
+    return this.replayedDecoded && displayOf(this.replayedDecoded);
   }
 
-  private decode(entry: BufferedFrame): FrameArrays {
-    return (entry.arrays ??= this.decoder.decode(entry.frame));
+  /** Returns the arrays of a frame; undefined until they are decoded, which this starts. */
+  private decode(entry: BufferedFrame): FrameArrays | undefined {
+    if (entry.arrays !== undefined || entry.requested) return entry.arrays;
+    entry.requested = true;
+    this.decoding.decode(entry.frame, (result) => {
+      if (result instanceof RangeError) return this.failed(result);
+      entry.arrays = result;
+      entry.requested = result !== undefined;
+      if (result !== undefined) this.keepDecoded(entry);
+    });
+    return entry.arrays;
+  }
+
+  private keepDecoded(entry: BufferedFrame): void {
+    if (entry.arrival === undefined) this.replayedDecoded = entry;
+    else if (entry.arrival > (this.newestDecoded?.arrival ?? -1)) this.newestDecoded = entry;
   }
 
   /** Returns rate, age and accuracy over the last second before `now` [ms]. */
@@ -201,6 +238,10 @@ export class FrameBuffer {
   private dropOldArrivals(now: number): void {
     while (this.arrivals.length > 0 && this.arrivals[0] <= now - 1000) this.arrivals.shift();
   }
+}
+
+function displayOf({ frame: { time }, arrays }: BufferedFrame): DisplayedFrame | undefined {
+  return arrays && { time, arrays };
 }
 
 function milliseconds(unixNanos: bigint): number {

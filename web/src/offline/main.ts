@@ -1,3 +1,4 @@
+import { embeddedDecoder } from "../decoders/embedded_decoder";
 import { elementById } from "../dom/elements";
 import { useOwnWords } from "../language/page_words";
 import { readMotion } from "../frames/clip";
@@ -8,7 +9,8 @@ useOwnWords();
 // The panels are open: the page has no buttons for them.
 document.body.classList.add("graphs-open", "panel-open");
 try {
-  new MotionPage(readMotion(elementById("motion").textContent ?? "")).start();
+  const decoder = await embeddedDecoder();
+  new MotionPage(decoder, readMotion(decoder, elementById("motion").textContent ?? "")).start();
 } catch (error) {
   const reason = error instanceof Error ? error.message : String(error);
   elementById("loading").textContent =

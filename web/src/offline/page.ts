@@ -50,9 +50,12 @@ export class MotionPage {
   /** The frame of a film that is drawn; undefined while no film is made. */
   private filmed: DisplayedFrame | undefined;
 
-  /** Throws RangeError for a motion that is not valid, and Error if the browser has no WebGL 2. */
-  constructor(private readonly motion: OfflineMotion) {
-    this.clip = new Clip(motion.frames, motion.bodies);
+  /** `decoder` is the compiled decoder. Throws RangeError for a motion that is not valid, and Error if the browser has no WebGL 2. */
+  constructor(
+    private readonly decoder: WebAssembly.Module,
+    private readonly motion: OfflineMotion,
+  ) {
+    this.clip = new Clip(decoder, motion.frames, motion.bodies);
     this.player = new Player(this.clip.length);
     this.graphs = new BreathGraphs(motion.frames, this.clip.times, motion.scene);
     this.viewer = new Viewer(elementById("view") as HTMLCanvasElement, this.host());
@@ -119,6 +122,7 @@ export class MotionPage {
   private filmSection(): HTMLElement {
     const source = {
       progress: idle(),
+      decoder: async () => this.decoder,
       record: async () => this.motion,
       stop: () => undefined,
     };

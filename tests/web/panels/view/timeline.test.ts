@@ -1,12 +1,14 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
+import { ImmediateDecoding } from "../../../../web/src/decoders/decoding";
+import { decoderModule } from "../../fakes/decoder_module";
 import { FrameBuffer } from "../../../../web/src/frames/frame_buffer";
 import { FrameSchema } from "../../../../web/src/gen/phrenic/v1/frames_pb";
 import { projectorRow } from "../../../../web/src/panels/view/projector_row";
 import { Timeline } from "../../../../web/src/panels/view/timeline";
 
 function watched() {
-  const frames = new FrameBuffer();
+  const frames = new FrameBuffer(new ImmediateDecoding(decoderModule()), () => {});
   const timeline = new Timeline(frames, (time) => frames.replayAt(time));
   for (const time of [0, 1, 2]) frames.receive(create(FrameSchema, { time }), 1000 * time);
   timeline.show();
