@@ -1,5 +1,6 @@
 // Compiles the server's decoder of frames (../../server/stream/decoder) to WebAssembly: src/decoders/simd.wasm, and
-// plain.wasm for browsers without SIMD. Does nothing if both are newer than their sources.
+// plain.wasm for browsers without SIMD, with zstd's own sources, which the npm package zstd-napi has. Does nothing if both
+// are newer than their sources.
 import { spawnSync } from "node:child_process";
 import { existsSync, mkdtempSync, readdirSync, rmSync, statSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -9,6 +10,7 @@ const packages = "binaryen clang-14 libc++-14-dev-wasm32 libclang-rt-14-dev-wasm
 const root = resolve(import.meta.dirname, "../..");
 const sources = join(root, "server/stream/decoder");
 const out = join(root, "web/src/decoders");
+const zstd = join(root, "web/node_modules/zstd-napi/deps/zstd/lib");
 const exported = [
   "allocate",
   "release",
@@ -20,8 +22,13 @@ const exported = [
 // No library throws, and the C library is that of WASI, of which nothing that calls the system is used: no imports.
 const target = ["--target=wasm32-wasi"];
 const compiling = [
-  ...["-std=c++20", "-O3", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror", "-I", root],
+  ...["-std=c++20", "-O3", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror", "-I", root, "-isystem", zstd],
   ...["-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics", "-fvisibility=hidden", "-ffunction-sections"],
+];
+// The small one of zstd's two ways to decode literals and sequences; messages of errors as numbers.
+const compilingZstd = [
+  ...["-Os", "-fvisibility=hidden", "-ffunction-sections", "-DZSTD_LEGACY_SUPPORT=0", "-DZSTD_TRACE=0"],
+  ...["-DZSTD_STRIP_ERROR_STRINGS=1", "-DHUF_FORCE_DECOMPRESS_X1=1", "-DZSTD_FORCE_DECOMPRESS_SEQUENCES_SHORT=1"],
 ];
 const linking = [
   ...["-nostartfiles", "-fuse-ld=lld"],
@@ -54,7 +61,8 @@ function build(name, files, simd) {
   try {
     const objects = files.map((file) => {
       const object = join(folder, `${basename(file)}.o`);
-      run("clang++-14", [...target, ...compiling, ...(simd ? ["-msimd128"] : []), "-c", file, "-o", object]);
+      const [compiler, options] = file.endsWith(".c") ? ["clang-14", compilingZstd] : ["clang++-14", compiling];
+      run(compiler, [...target, ...options, ...(simd ? ["-msimd128"] : []), "-c", file, "-o", object]);
       return object;
     });
     const linked = join(folder, "linked.wasm");
@@ -68,7 +76,13 @@ function build(name, files, simd) {
 }
 
 const here = import.meta.dirname;
-const files = [...filesIn(sources, ".cc"), ...filesIn(here, ".cc")].sort();
+if (!existsSync(zstd)) {
+  console.error(`phrenic: zstd's sources are missing from web/node_modules: run npm ci in web.`);
+  process.exit(1);
+}
+const withoutThreads = filesIn(join(zstd, "common"), ".c").filter((file) => !/(pool|threading)\.c$/.test(file));
+const library = [...withoutThreads, ...filesIn(join(zstd, "decompress"), ".c")];
+const files = [...filesIn(sources, ".cc"), ...filesIn(here, ".cc"), ...library].sort();
 const made = ["simd", "plain"].map((name) => join(out, `${name}.wasm`));
 const changed = Math.max(
   ...[...files, ...filesIn(sources, ".h"), ...filesIn(here, ".mjs")].map((file) => statSync(file).mtimeMs),

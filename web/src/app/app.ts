@@ -2,7 +2,6 @@ import { needsExactPositions } from "../appearance/fields";
 import { LayerStyles } from "../appearance/layer_styles";
 import type { Api } from "../connection/api";
 import type { Identity } from "../connection/identity";
-import { SampleFeed } from "../connection/sample_feed";
 import { type ConnectionListener, type ConnectionState, SessionConnection } from "../connection/session_connection";
 import { download } from "../dom/download";
 import { ownStorage } from "../dom/storage";
@@ -61,14 +60,13 @@ import { Viewer } from "../viewer/viewer";
 import { drawers } from "./drawers";
 import { dropZone } from "./drop_zone";
 import { filmStage } from "./film_stage";
+import { appShortcuts } from "./app_shortcuts";
 import { Fluoroscopy } from "./fluoroscopy";
 import { stageInsets } from "./insets";
 import { SceneTools } from "./scene_tools";
 import { SecondView } from "./second_view";
 import { sessionFrames } from "./session_frames";
-import { SessionReferences } from "./session_references";
-import { shortcuts } from "./shortcuts";
-import { viewpointShortcuts } from "./viewpoint_shortcuts";
+import { SessionNumbers } from "./session_numbers";
 import { skipLinks } from "./skip_links";
 import { StudentView } from "./student_view";
 import { testHook } from "./test_hook";
@@ -76,9 +74,6 @@ import { testHook } from "./test_hook";
 /** Update intervals of texts and numbers, and of graphs [ms]. */
 const statusInterval = 200;
 const graphInterval = 100;
-/** When the graphs begin: after the first drawing, which they would delay; in a tab that is not drawn, after the start [ms]. */
-const numbersAfterDrawing = 500;
-const latestNumbers = 15_000;
 
 /** The encoder is loaded with the first film. */
 const openWriter: OpenWriter = async (...of) => (await import("../film/film_writer")).FilmWriter.open(...of);
@@ -110,8 +105,7 @@ export class App {
   private readonly participation: Participation;
   private readonly cameraSharing: CameraSharing;
   private readonly connection: SessionConnection;
-  private readonly samples: SampleFeed;
-  private readonly references: SessionReferences;
+  private readonly numbers: SessionNumbers;
   private readonly viewer: Viewer;
   private readonly tools: SceneTools;
   private readonly graphs: GraphsPanel;
@@ -132,10 +126,6 @@ export class App {
   private readonly uploads: Uploads;
   private readonly comparisonCard: ComparisonCard;
   private readonly bodies = new Signal<Body[]>([]);
-  private newestNumbers: Frame | undefined;
-  private followsNumbers = false;
-  /** True after the first drawing of the scene. */
-  private drawn = false;
   /** Last known top of the dock [CSS pixels]. */
   private dockTop = 0;
   /** Names of the bodies that show tissue. */
@@ -156,7 +146,6 @@ export class App {
     this.uploads = new Uploads(api);
     this.comparisonCard = new ComparisonCard(this.comparisons);
     this.connection = new SessionConnection(api, sessionId, this.connectionListener(), clock);
-    this.samples = new SampleFeed(api, sessionId, { sample: (numbers) => this.record(numbers) }, clock);
     this.connectionBadge = new ConnectionBadge(() => this.connection.retryNow());
     this.viewer = new Viewer(elementById("view") as HTMLCanvasElement, this.viewerHost());
     this.tools = new SceneTools(
@@ -168,10 +157,12 @@ export class App {
       new LungTools(api, sessionId),
     );
     this.cameraSharing = new CameraSharing(api, sessionId, this.participation, this.viewer.rig, clock);
-    this.references = new SessionReferences(api, this.controller, this.presets, () => {
-      this.graphs.refresh(this.frames.frame);
-    });
-    this.graphs = new GraphsPanel(() => sessionId, this.tools.ownSeries, this.references.now);
+    const listener = {
+      record: (numbers: Frame) => this.record(numbers),
+      referencesChanged: () => this.graphs.refresh(this.frames.frame),
+    };
+    this.numbers = new SessionNumbers(api, this.controller, this.presets, listener, clock);
+    this.graphs = new GraphsPanel(() => sessionId, this.tools.ownSeries, this.numbers.references.now);
     this.secondView = this.openSecondView();
     this.student = this.openStudentView();
     this.fluoroscopy = this.openFluoroscopy();
@@ -205,8 +196,7 @@ export class App {
     setInterval(() => document.hidden || this.drawGraphs(), graphInterval);
     window.addEventListener("pagehide", () => this.controller.flush());
     this.tools.coloring.field.subscribe((kind) => this.connection.setExact(needsExactPositions(kind)));
-    this.controller.session.subscribe(() => this.samples.wake());
-    setTimeout(() => this.followNumbers(), latestNumbers);
+    this.numbers.start();
     void this.connection.run();
     void this.participation.run();
   }
@@ -227,10 +217,7 @@ export class App {
         if (live && !this.timeline.replaying) this.graphs.mMode.receive(time, arrays);
       },
       afterDraw: (orientation: Parameters<Margins["show"]>[0]) => {
-        if (!this.drawn && this.displayed !== undefined) {
-          this.drawn = true;
-          setTimeout(() => this.followNumbers(), numbersAfterDrawing);
-        }
+        if (this.displayed !== undefined) this.numbers.afterDraw();
         this.margins.show(orientation);
         this.fluoroscopy.draw();
         this.tools.afterDraw(orientation);
@@ -261,13 +248,13 @@ export class App {
     const { controller, participation, presets, report, tools, layerStyles, secondView, identity } = this;
     const { open, view, lesson, sessionId } = this.target;
     const answers = new ClassAnswers(this.api, sessionId, identity);
-    const catchUp = () => this.samples.catchUp();
+    const catchUp = () => this.numbers.catchUp();
     const shown = {
       tools,
       layerStyles,
       secondView,
       catchUp,
-      references: this.references.now,
+      references: this.numbers.references.now,
       resized: () => this.resize(),
     };
     return new StudentView(
@@ -366,62 +353,14 @@ export class App {
     const measured = () => this.tools.measuring.measurements.kept();
     const share = new ShareDialog({ controller, report, open, photograph: () => void photograph(), rows, measured });
     const { graphs, panel } = drawers(() => this.resize(), this.secondView !== undefined);
-    const press = (id: string) => () => document.getElementById(id)?.click();
-    const when = () => this.student.inLesson;
-    const keys = shortcuts(
-      [
-        { key: " ", description: "Play, pause", run: press("play") },
-        { key: ".", description: "Step; next frame during replay", run: () => this.stepForward() },
-        { key: ",", description: "Replay, one frame back", run: () => this.timeline.stepFrame(-1) },
-        { key: "r", description: "Reset", run: press("reset") },
-        { key: "g", description: "Graphs", run: graphs },
-        { key: "c", description: "Controls", run: panel },
-        { key: "b", description: "Compare with healthy", run: press("compare-healthy") },
-        { key: "e", description: "Student or expert view", run: () => this.student.toggle() },
-        { key: "PageDown", description: "Next step of the lesson", when, run: () => this.student.moveInLesson(1) },
-        { key: "PageUp", description: "Step before", when, run: () => this.student.moveInLesson(-1) },
-        { key: "h", description: "Whole scene", run: () => this.tools.visit("home") },
-        { key: "f", description: "Front view", run: () => this.tools.visit("front") },
-        ...viewpointShortcuts(this.tools),
-        { key: "/", description: "Find a structure", run: () => elementById("find-structure").focus() },
-        { key: "n", description: "Names of structures", run: () => this.tools.labels.set(!this.tools.labels.value) },
-        { key: "m", description: "Measure a distance", run: () => this.tools.measuring.start() },
-        {
-          key: "x",
-          description: "Fluoroscopy",
-          when: () => !this.fluoroscopy.button.hidden,
-          run: () => void this.fluoroscopy.toggle(),
-        },
-        {
-          key: "Escape",
-          description: "End fluoroscopy",
-          when: () => this.fluoroscopy.isOpen,
-          run: () => this.fluoroscopy.close(),
-        },
-        {
-          key: "Escape",
-          description: "End measuring",
-          when: () => this.tools.measuring.measurements.tool.value !== undefined,
-          run: () => this.tools.measuring.measurements.use(undefined),
-        },
-        {
-          key: "Escape",
-          description: "Show all structures again",
-          when: () => this.tools.structures.isolated.value !== undefined,
-          run: () => this.tools.structures.showAll(),
-        },
-        {
-          key: "Escape",
-          description: "Remove all measurements",
-          when: () => this.tools.measuring.measurements.all.value.length > 0,
-          run: () => this.tools.measuring.measurements.clear(),
-        },
-        { key: "p", description: "Save a screenshot", run: () => void photograph() },
-        { key: "s", description: "Share, copy, compare", run: () => share.show() },
-      ],
-      () => controller.undo(),
-      () => controller.redo(),
-    );
+    const { tools, student, fluoroscopy, timeline } = this;
+    const keys = appShortcuts({
+      ...{ tools, student, fluoroscopy, timeline, toggleGraphs: graphs, togglePanel: panel },
+      photograph: () => void photograph(),
+      share: () => share.show(),
+      undo: () => controller.undo(),
+      redo: () => controller.redo(),
+    });
     const control = new ControlDialog(this.participation, () => this.cameraSharing.follow());
     document.body.prepend(skipLinks());
     document.body.append(share.element, keys, control.element);
@@ -455,17 +394,8 @@ export class App {
     };
   }
 
-  /** Reads samples and references from now on; does nothing at a second call. */
-  private followNumbers(): void {
-    if (this.followsNumbers) return;
-    this.followsNumbers = true;
-    void this.samples.run();
-    this.references.start();
-  }
-
   /** Records the numbers of a sample for the graphs. */
   private record(numbers: Frame): void {
-    this.newestNumbers = numbers;
     this.graphs.record(numbers);
     this.student.record(numbers);
   }
@@ -484,8 +414,7 @@ export class App {
     this.tools.start(bodies, this.tissue, diagram);
     this.measureAsLinked();
     this.student.start();
-    // The first sample of a session that rests may have come before its scene.
-    if (this.newestNumbers !== undefined) this.record(this.newestNumbers);
+    this.numbers.recordNewest();
     this.fluoroscopy.start(bodies);
     elementById("loading").hidden = true;
   }
@@ -521,11 +450,6 @@ export class App {
     this.frames.replayAt(time);
     this.secondView?.replayAt(time);
     this.tools.replayAt(this.frames.replayedFrame?.time);
-  }
-
-  private stepForward(): void {
-    if (this.timeline.replaying) this.timeline.stepFrame(1);
-    else document.getElementById("step")?.click();
   }
 
   private drawGraphs(): void {

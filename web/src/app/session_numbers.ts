@@ -1,0 +1,75 @@
+import type { Api } from "../connection/api";
+import { SampleFeed } from "../connection/sample_feed";
+import type { Frame } from "../gen/phrenic/v1/frames_pb";
+import type { Preset } from "../gen/phrenic/v1/scene_pb";
+import type { SessionController } from "../session/session_controller";
+import type { Signal } from "../state/signal";
+import type { Clock } from "../timing/clock";
+import { SessionReferences } from "./session_references";
+
+/** When the graphs begin: after the first drawing, which they would delay; in a tab that is not drawn, after the start [ms]. */
+const afterFirstDrawing = 500;
+const latest = 15_000;
+
+/** What the graphs of a session need. */
+export interface NumbersListener {
+  /** Records the numbers of a sample. */
+  record(numbers: Frame): void;
+  /** The ranges of health or the static curves have changed. */
+  referencesChanged(): void;
+}
+
+/** The samples of a session's measures, and what graphs show beside them. */
+export class SessionNumbers {
+  readonly references: SessionReferences;
+  private readonly samples: SampleFeed;
+  private newest: Frame | undefined;
+  private follows = false;
+  private drawn = false;
+
+  constructor(
+    api: Api,
+    private readonly controller: SessionController,
+    presets: Signal<Preset[]>,
+    private readonly listener: NumbersListener,
+    clock: Clock,
+  ) {
+    this.samples = new SampleFeed(api, controller.sessionId, { sample: (numbers) => this.record(numbers) }, clock);
+    this.references = new SessionReferences(api, controller, presets, () => listener.referencesChanged());
+  }
+
+  /** Begins to read, at the latest some seconds from now. */
+  start(): void {
+    this.controller.session.subscribe(() => this.samples.wake());
+    setTimeout(() => this.follow(), latest);
+  }
+
+  /** To be called after each drawing of the scene: begins to read soon after the first. */
+  afterDraw(): void {
+    if (this.drawn) return;
+    this.drawn = true;
+    setTimeout(() => this.follow(), afterFirstDrawing);
+  }
+
+  /** Records the newest sample for a scene that has come: the first of a session that rests may have come before it. */
+  recordNewest(): void {
+    if (this.newest !== undefined) this.listener.record(this.newest);
+  }
+
+  /** Reads what has come since the last sample. */
+  catchUp(): Promise<void> {
+    return this.samples.catchUp();
+  }
+
+  private follow(): void {
+    if (this.follows) return;
+    this.follows = true;
+    void this.samples.run();
+    this.references.start();
+  }
+
+  private record(numbers: Frame): void {
+    this.newest = numbers;
+    this.listener.record(numbers);
+  }
+}
