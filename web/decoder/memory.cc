@@ -1,5 +1,5 @@
-// Memory of the decoder in WebAssembly: the page writes bytes there and reads positions. Where memory is short the module
-// traps, so that nothing is written through null; the page then makes another instance.
+// Memory of the decoder in WebAssembly: the page writes bytes there and reads positions. Where memory is short the
+// module traps, so that nothing is written through null; the page then makes another instance.
 #include <cstdlib>
 #include <new>
 
@@ -25,5 +25,4 @@ extern "C" {
 // Returns memory aligned to 16 bytes; phrenic_release frees it.
 __attribute__((visibility("default"), used)) void* phrenic_allocate(std::size_t size) { return AllocateOrTrap(size); }
 __attribute__((visibility("default"), used)) void phrenic_release(void* memory) { std::free(memory); }
-
 }
