@@ -11,7 +11,7 @@ namespace phrenic::anatomy {
 namespace {
 
 constexpr double kHalfGap = 0.6;         // between a lobe and the middle of its fissure [mm]
-constexpr double kRoundedEdge = 2.5;       // of a lobe, so that the fissure is a groove [mm]
+constexpr double kRoundedEdge = 2.5;     // of a lobe, so that the fissure is a groove [mm]
 constexpr double kOutsideLung = 0.2;     // how far a fissure's sheet ends outside of the lung [mm]
 constexpr double kHighestFissure = 345;  // z of the fissures [mm]
 

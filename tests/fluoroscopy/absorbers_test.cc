@@ -152,6 +152,12 @@ TEST(TissueOf, IsToldByNameBeforeLayer) {
   EXPECT_EQ(TissueOf("rib-3-left", "ribs"), Tissue::kRib);
   EXPECT_EQ(TissueOf("cartilage-3-left", "cartilages"), Tissue::kCartilage);
   EXPECT_EQ(TissueOf("superior-vena-cava", "caval-veins"), Tissue::kBlood);
+  EXPECT_EQ(TissueOf("kidney-left", "kidneys"), Tissue::kOrgan);
+  // The lungs drawn in parts would count twice; the shoulder girdle is outside of the trunk's outline.
+  EXPECT_EQ(TissueOf("lobe-upper-left", "upper-lobes"), std::nullopt);
+  EXPECT_EQ(TissueOf("fissure-oblique-left", "fissures"), std::nullopt);
+  EXPECT_EQ(TissueOf("clavicle-left", "clavicles"), std::nullopt);
+  EXPECT_EQ(TissueOf("scapula-left", "scapulae"), std::nullopt);
   EXPECT_EQ(TissueOf("right-lower", "lungs"), Tissue::kLung);
   EXPECT_EQ(TissueOf("chest-wall", "mechanics"), std::nullopt);
   EXPECT_EQ(TissueOf("cloth", "cloth"), std::nullopt);

@@ -74,6 +74,12 @@ test("ASmallGapIsClosedAndAnOpenSurfaceIsLeftOutAndNamed", () => {
 
 test("BodiesAbsorbByTheirNames", () => {
   const of = (name: string, layer: string) => absorptionOf({ name, layer });
+  expect(of("kidney-left", "kidneys")).toBe("organ");
+  // The lungs drawn in parts would count twice; the shoulder girdle is outside of the trunk's outline.
+  expect(of("lobe-upper-left", "upper-lobes")).toBeUndefined();
+  expect(of("fissure-oblique-left", "fissures")).toBeUndefined();
+  expect(of("clavicle-left", "clavicles")).toBeUndefined();
+  expect(of("scapula-left", "scapulae")).toBeUndefined();
   expect(of("disc-t1", "discs")).toBe("cartilage");
   expect(of("t12", "spine")).toBe("vertebra");
   expect(of("rib-3-left", "ribs")).toBe("rib");

@@ -48,7 +48,6 @@ import { Comparisons } from "../session/comparisons";
 import { Exports } from "../session/exports";
 import { ForceQueries } from "../session/force_queries";
 import type { LessonPlace } from "../session/lessons";
-import { measurementsOf } from "../session/measured_links";
 import type { PageView } from "../session/page_view";
 import { Participation, refusalReason } from "../session/participation";
 import { SessionController } from "../session/session_controller";
@@ -345,11 +344,8 @@ export class App {
     const stage = filmStage(viewer, this.tools.coloring, (frame) => (this.filmed = frame));
     const film = new FilmMaker(recordedMotion(new Exports(this.api, sessionId)), stage, openWriter);
     const animation = FilmMaker.ofAnimations(recordedMotion(new Exports(this.api, sessionId)), stage, openAnimation);
-    const rows = [
-      takeHomeRow(new Exports(this.api, sessionId, undefined, inPageLanguage)),
-      filmRow(film),
-      animationRow(animation),
-    ];
+    const translated = new Exports(this.api, sessionId, undefined, inPageLanguage);
+    const rows = [takeHomeRow(translated), filmRow(film), animationRow(animation)];
     const measured = () => this.tools.measuring.measurements.kept();
     const share = new ShareDialog({ controller, report, open, photograph: () => void photograph(), rows, measured });
     const { graphs, panel } = drawers(() => this.resize(), this.secondView !== undefined);
@@ -412,21 +408,11 @@ export class App {
     const diagram = this.viewer.show(bodies);
     this.layerStyles.start(bodies, report);
     this.tools.start(bodies, this.tissue, diagram);
-    this.measureAsLinked();
+    this.tools.measuring.measureAsLinked(this.target.address, this.controller.notice);
     this.student.start();
     this.numbers.recordNewest();
     this.fluoroscopy.start(bodies);
     elementById("loading").hidden = true;
-  }
-
-  /** Measures what the address asks for. */
-  private measureAsLinked(): void {
-    try {
-      this.tools.measuring.measurements.replaceKept(measurementsOf(this.target.address));
-    } catch (error) {
-      // The state of the session, which follows the scene at once, clears the notice.
-      queueMicrotask(() => this.controller.notice.set((error as Error).message));
-    }
   }
 
   /** Shows the layer of a body, if it is hidden. */

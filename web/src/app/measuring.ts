@@ -5,6 +5,8 @@ import type { Body, FrameArrays } from "../geometry/bodies";
 import type { Marker, VertexRef } from "../geometry/vertices";
 import { darkColor } from "../graphs/colors";
 import { MeasurePanel, readingOf } from "../panels/view/measure_panel";
+import { measurementsOf } from "../session/measured_links";
+import type { Signal } from "../state/signal";
 import type { Annotations } from "../viewer/annotations";
 import type { SceneStructures } from "./scene_structures";
 
@@ -55,6 +57,16 @@ export class Measuring {
   start(): void {
     this.measurements.use("distance");
     this.canvas.focus();
+  }
+
+  /** Measures what an address asks for, or notes what is wrong with it. */
+  measureAsLinked(address: URL, notice: Signal<string>): void {
+    try {
+      this.measurements.replaceKept(measurementsOf(address));
+    } catch (error) {
+      // The state of the session, which follows the scene at once, clears the notice.
+      queueMicrotask(() => notice.set((error as Error).message));
+    }
   }
 
   /** Takes a picked vertex. Returns false if no tool is active. */
