@@ -109,6 +109,7 @@ State AfterTenSteps(int threads, const MeshCache& cache) {
   const auto model = models.Get(source, {.trusted = true});
   SetCompileThreads(before);
   EXPECT_TRUE(model.ok()) << model.status();
+  if (!model.ok()) return {};
   State state = (*model)->InitialState();
   Workspace work = (*model)->MakeWorkspace();
   for (int i = 0; i < 10; ++i) {

@@ -19,10 +19,10 @@ namespace phrenic::session {
 std::string DefaultCacheFolder();
 
 // A folder of files, one per mesh, named by a hash of the part, its resolution, the code that generates it (kMeshCode),
-// the layout of the file and the processor: other versions generate other bits, and so do the libraries' functions on another processor. All
-// programs of a build share the files. Damaged ones
-// are generated again. A folder that cannot be written to disables the cache without an error. Thread-safe, also across
-// processes, as files are complete before they get their name.
+// the layout of the file and the processor: other versions generate other bits, and so do the libraries' functions on
+// another processor. All programs of a build share the files. Damaged ones are generated again. A folder that cannot be
+// written to disables the cache without an error. Thread-safe, also across processes, as files are complete before they
+// get their name.
 class MeshCache {
  public:
   static constexpr std::int64_t kMostBytes = 256 << 20;
