@@ -66,7 +66,7 @@ void AddBreath(CLI::App& command, CLI::Option* scene, BreathOptions& breath) {
       ->needs(scene);
   command.add_option("--dicom", breath.dicom, "also write DICOM: seg, ct (a series), stl, obj, or all but ct")
       ->delimiter(',')
-      ->check(CLI::IsMember({"seg", "ct", "stl", "obj", "all"}))
+      ->check(CLI::IsMember({"seg", "ct", "stl", "obj", "all"}).description(""))
       ->needs(scene);
   AddDataFolder(command, breath.data_dir);
 }
