@@ -48,7 +48,7 @@ const tables: Record<string, string[]> = {
 
 /** Properties whose texts are translated where they are shown. */
 const properties: Record<string, string[]> = {
-  "app/app.ts": ["description"],
+  "app/page_shortcuts.ts": ["description"],
   "app/shortcuts.ts": ["description"],
   "graphs/catalogue.ts": ["title"],
   "graphs/student_graphs.ts": ["title"],

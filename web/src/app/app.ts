@@ -62,11 +62,11 @@ import { dropZone } from "./drop_zone";
 import { filmStage } from "./film_stage";
 import { Fluoroscopy } from "./fluoroscopy";
 import { stageInsets } from "./insets";
+import { pageShortcuts } from "./page_shortcuts";
 import { SceneTools } from "./scene_tools";
 import { SecondView } from "./second_view";
 import { SessionReferences } from "./session_references";
 import { shortcuts } from "./shortcuts";
-import { viewpointShortcuts } from "./viewpoint_shortcuts";
 import { skipLinks } from "./skip_links";
 import { StudentView } from "./student_view";
 import { testHook } from "./test_hook";
@@ -75,8 +75,7 @@ import { testHook } from "./test_hook";
 const statusInterval = 200;
 const graphInterval = 100;
 /** When the graphs begin: after the first drawing, which they would delay; in a tab that is not drawn, after the start [ms]. */
-const numbersAfterDrawing = 500;
-const latestNumbers = 15_000;
+const [numbersAfterDrawing, latestNumbers] = [500, 15_000];
 
 /** The encoder is loaded with the first film. */
 const openWriter: OpenWriter = async (...of) => (await import("../film/film_writer")).FilmWriter.open(...of);
@@ -130,7 +129,6 @@ export class App {
   private readonly bodies = new Signal<Body[]>([]);
   private newestNumbers: Frame | undefined;
   private followsNumbers = false;
-  /** True after the first drawing of the scene. */
   private drawn = false;
   /** Last known top of the dock [CSS pixels]. */
   private dockTop = 0;
@@ -152,7 +150,7 @@ export class App {
     this.uploads = new Uploads(api);
     this.comparisonCard = new ComparisonCard(this.comparisons);
     this.connection = new SessionConnection(api, sessionId, this.connectionListener(), clock);
-    this.samples = new SampleFeed(api, sessionId, { sample: (numbers) => this.record(numbers) }, clock);
+    this.samples = new SampleFeed(api, sessionId, { sample: (...numbers) => this.record(...numbers) }, clock);
     this.connectionBadge = new ConnectionBadge(() => this.connection.retryNow());
     this.viewer = new Viewer(elementById("view") as HTMLCanvasElement, this.viewerHost());
     this.tools = new SceneTools(
@@ -244,7 +242,7 @@ export class App {
     if (secondSessionId === undefined || secondSessionId === sessionId) return undefined;
     const { viewer, frames, tools, layerStyles, controller, presets } = this;
     const mayChange = () => refusalReason(this.participation.roles.value) === "";
-    const recordBeside = (numbers: Frame) => this.student.recordBeside(numbers);
+    const recordBeside = (numbers: Frame, present: boolean) => this.student.recordBeside(numbers, present);
     const shared = { viewer, frames, tools, layerStyles, controller, presets };
     const primary = { ...shared, host: this.viewerHost(), mayChange, recordBeside };
     return new SecondView(this.api, secondSessionId, primary, this.clock, {
@@ -361,59 +359,15 @@ export class App {
     ];
     const share = new ShareDialog({ controller, report, open, photograph: () => void photograph(), rows });
     const { graphs, panel } = drawers(() => this.resize(), this.secondView !== undefined);
-    const press = (id: string) => () => document.getElementById(id)?.click();
-    const when = () => this.student.inLesson;
     const keys = shortcuts(
-      [
-        { key: " ", description: "Play, pause", run: press("play") },
-        { key: ".", description: "Step; next frame during replay", run: () => this.stepForward() },
-        { key: ",", description: "Replay, one frame back", run: () => this.timeline.stepFrame(-1) },
-        { key: "r", description: "Reset", run: press("reset") },
-        { key: "g", description: "Graphs", run: graphs },
-        { key: "c", description: "Controls", run: panel },
-        { key: "b", description: "Compare with healthy", run: press("compare-healthy") },
-        { key: "e", description: "Student or expert view", run: () => this.student.toggle() },
-        { key: "PageDown", description: "Next step of the lesson", when, run: () => this.student.moveInLesson(1) },
-        { key: "PageUp", description: "Step before", when, run: () => this.student.moveInLesson(-1) },
-        { key: "h", description: "Whole scene", run: () => this.tools.visit("home") },
-        { key: "f", description: "Front view", run: () => this.tools.visit("front") },
-        ...viewpointShortcuts(this.tools),
-        { key: "/", description: "Find a structure", run: () => elementById("find-structure").focus() },
-        { key: "n", description: "Names of structures", run: () => this.tools.labels.set(!this.tools.labels.value) },
-        { key: "m", description: "Measure a distance", run: () => this.tools.measuring.start() },
-        {
-          key: "x",
-          description: "Fluoroscopy",
-          when: () => !this.fluoroscopy.button.hidden,
-          run: () => void this.fluoroscopy.toggle(),
-        },
-        {
-          key: "Escape",
-          description: "End fluoroscopy",
-          when: () => this.fluoroscopy.isOpen,
-          run: () => this.fluoroscopy.close(),
-        },
-        {
-          key: "Escape",
-          description: "End measuring",
-          when: () => this.tools.measuring.measurements.tool.value !== undefined,
-          run: () => this.tools.measuring.measurements.use(undefined),
-        },
-        {
-          key: "Escape",
-          description: "Show all structures again",
-          when: () => this.tools.structures.isolated.value !== undefined,
-          run: () => this.tools.structures.showAll(),
-        },
-        {
-          key: "Escape",
-          description: "Remove all measurements",
-          when: () => this.tools.measuring.measurements.all.value.length > 0,
-          run: () => this.tools.measuring.measurements.clear(),
-        },
-        { key: "p", description: "Save a screenshot", run: () => void photograph() },
-        { key: "s", description: "Share, copy, compare", run: () => share.show() },
-      ],
+      pageShortcuts({
+        graphs,
+        panel,
+        photograph: () => void photograph(),
+        share: () => share.show(),
+        stepForward: () => this.stepForward(),
+        page: { timeline: this.timeline, student: this.student, tools: this.tools, fluoroscopy: this.fluoroscopy },
+      }),
       () => controller.undo(),
       () => controller.redo(),
     );
@@ -459,10 +413,10 @@ export class App {
   }
 
   /** Records the numbers of a sample for the graphs. */
-  private record(numbers: Frame): void {
+  private record(numbers: Frame, present: boolean): void {
     this.newestNumbers = numbers;
-    this.graphs.record(numbers);
-    this.student.record(numbers);
+    this.graphs.record(numbers, present);
+    this.student.record(numbers, present);
   }
 
   private showScene(bodies: Body[], report: CompileReport): void {
@@ -479,7 +433,7 @@ export class App {
     this.tools.start(bodies, this.tissue, diagram);
     this.student.start();
     // The first sample of a session that rests may have come before its scene.
-    if (this.newestNumbers !== undefined) this.record(this.newestNumbers);
+    if (this.newestNumbers !== undefined) this.record(this.newestNumbers, true);
     this.fluoroscopy.start(bodies);
     elementById("loading").hidden = true;
   }

@@ -1,8 +1,8 @@
 import { readFile } from "node:fs/promises";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { endAll, startAll, ViewerPage } from "./browser";
-import type { Server } from "./server";
+import { endAll, startAll, ViewerPage } from "../browser";
+import type { Server } from "../server";
 
 let server: Server;
 let browser: Browser;
@@ -19,7 +19,7 @@ afterAll(() => endAll(browser, server));
 async function savedTimes(graph: string): Promise<number[]> {
   const [file] = await Promise.all([
     viewer.page.waitForEvent("download"),
-    viewer.page.click(`[data-graph="${graph}"] button:has-text("CSV")`),
+    viewer.page.click(`#graphs [data-graph="${graph}"] button:has-text("CSV")`),
   ]);
   const [, ...rows] = (await readFile(await file.path(), "utf8")).trim().split("\n");
   return rows.map((row) => Number(row.split(",")[0]));
@@ -47,10 +47,12 @@ test("SavedCurvesHaveNoGapHoweverFewPicturesAreDrawn", async () => {
 
 test("TheCampbellDiagramHasItsCurvesAndWork", async () => {
   const { page } = viewer;
-  const note = page.locator('[data-graph="campbell"] .note');
+  const note = page.locator('#graphs [data-graph="campbell"] .note');
   await note.scrollIntoViewIfNeeded();
   expect(await note.textContent()).toMatch(/Work of a breath: 0\.\d+ J against recoil, 0\.\d+ J against resistance/);
-  expect(await page.locator('[data-graph="measure lung volume"] .note').textContent()).toMatch(/0\.4 to 0\.7 l/);
+  expect(await page.locator('#graphs [data-graph="measure lung volume"] .note').textContent()).toMatch(
+    /0\.4 to 0\.7 l/,
+  );
   expect(await viewer.violations()).toEqual([]);
   await viewer.saveScreenshot("campbell");
   expect(viewer.consoleErrors).toEqual([]);
