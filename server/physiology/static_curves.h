@@ -9,7 +9,7 @@
 
 namespace phrenic::physiology {
 
-// Returns the force of the scene that has lungs and abdomen; null if there is none.
+// Returns the force of the scene that has lungs and abdomen; null for other scenes.
 const v1::ThoraxPressures* ThoraxPressuresOf(const v1::Scene& scene);
 
 // Returns the curves of lung recoil and of the relaxed chest wall, from a quarter of the rest volume to nearly full

@@ -29,7 +29,7 @@ class Sampler {
   // Returns the measures, in the scene's order, and then the probes.
   const std::vector<v1::SampledQuantity>& quantities() const { return quantities_; }
 
-  // Returns the track of an interval [simulated s], and makes it if there is none. It is kept as long as the result
+  // Returns the track of an interval [simulated s], and makes it if it is new. It is kept as long as the result
   // exists, and for `keep` after this call. RESOURCE_EXHAUSTED, naming the field, above kMostTracks intervals; the
   // reason of Close after Close.
   absl::StatusOr<std::shared_ptr<const SampleTrack>> Track(double interval, absl::Duration keep)

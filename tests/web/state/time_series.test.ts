@@ -34,3 +34,15 @@ test("ARepeatedTimeIsIgnored", () => {
   history.add(1, [["dome", 1]]);
   expect(history.times).toEqual([1]);
 });
+
+test("ProvisionalValuesStayUntilTheNextOnes", () => {
+  const history = new TimeSeries(10);
+  history.add(0.5, [["v", 1]], true);
+  expect(history.times).toEqual([0.5]);
+  history.add(0.52, [["v", 2]]);
+  history.add(0.54, [["v", 3]]);
+  expect([history.times, history.series.get("v")]).toEqual([
+    [0.52, 0.54],
+    [2, 3],
+  ]);
+});

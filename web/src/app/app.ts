@@ -157,7 +157,7 @@ export class App {
     );
     this.cameraSharing = new CameraSharing(api, sessionId, this.participation, this.viewer.rig, clock);
     const listener = {
-      record: (numbers: Frame) => this.record(numbers),
+      record: (numbers: Frame, present: boolean) => this.record(numbers, present),
       referencesChanged: () => this.graphs.refresh(this.frames.frame),
     };
     this.numbers = new SessionNumbers(api, this.controller, this.presets, listener, clock);
@@ -234,7 +234,7 @@ export class App {
     if (secondSessionId === undefined || secondSessionId === sessionId) return undefined;
     const { viewer, frames, tools, layerStyles, controller, presets } = this;
     const mayChange = () => refusalReason(this.participation.roles.value) === "";
-    const recordBeside = (numbers: Frame) => this.student.recordBeside(numbers);
+    const recordBeside = (numbers: Frame, present: boolean) => this.student.recordBeside(numbers, present);
     const shared = { viewer, frames, tools, layerStyles, controller, presets };
     const primary = { ...shared, host: this.viewerHost(), mayChange, recordBeside };
     return new SecondView(this.api, secondSessionId, primary, this.clock, {
@@ -391,9 +391,9 @@ export class App {
   }
 
   /** Records the numbers of a sample for the graphs. */
-  private record(numbers: Frame): void {
-    this.graphs.record(numbers);
-    this.student.record(numbers);
+  private record(numbers: Frame, present: boolean): void {
+    this.graphs.record(numbers, present);
+    this.student.record(numbers, present);
   }
 
   private showScene(bodies: Body[], report: CompileReport): void {

@@ -41,7 +41,7 @@ export interface PrimaryView {
   /** True if this viewer may play and pause the session. */
   mayChange(): boolean;
   /** Called with the numbers of every sample of the second session. */
-  recordBeside(numbers: Frame): void;
+  recordBeside(numbers: Frame, present: boolean): void;
 }
 
 /**
@@ -88,7 +88,7 @@ export class SecondView {
     this.connection = new SessionConnection(api, sessionId, this.connectionListener(), clock);
     this.trackCameraLeader(canvas);
     this.followAppearance();
-    const samples = new SampleFeed(api, sessionId, { sample: (numbers) => primary.recordBeside(numbers) }, clock);
+    const samples = new SampleFeed(api, sessionId, { sample: (...numbers) => primary.recordBeside(...numbers) }, clock);
     this.controller.session.subscribe(() => samples.wake());
     void this.connection.run();
     void samples.run();

@@ -13,8 +13,8 @@ const latest = 15_000;
 
 /** What the graphs of a session need. */
 export interface NumbersListener {
-  /** Records the numbers of a sample. */
-  record(numbers: Frame): void;
+  /** Records the numbers of a sample; `present`: of the state when reading began, between two samples. */
+  record(numbers: Frame, present: boolean): void;
   /** The ranges of health or the static curves have changed. */
   referencesChanged(): void;
 }
@@ -34,7 +34,12 @@ export class SessionNumbers {
     private readonly listener: NumbersListener,
     clock: Clock,
   ) {
-    this.samples = new SampleFeed(api, controller.sessionId, { sample: (numbers) => this.record(numbers) }, clock);
+    this.samples = new SampleFeed(
+      api,
+      controller.sessionId,
+      { sample: (...numbers) => this.record(...numbers) },
+      clock,
+    );
     this.references = new SessionReferences(api, controller, presets, () => listener.referencesChanged());
   }
 
@@ -53,7 +58,7 @@ export class SessionNumbers {
 
   /** Records the newest sample for a scene that has come: the first of a session that rests may have come before it. */
   recordNewest(): void {
-    if (this.newest !== undefined) this.listener.record(this.newest);
+    if (this.newest !== undefined) this.listener.record(this.newest, true);
   }
 
   /** Reads what has come since the last sample. */
@@ -68,8 +73,8 @@ export class SessionNumbers {
     this.references.start();
   }
 
-  private record(numbers: Frame): void {
+  private record(numbers: Frame, present: boolean): void {
     this.newest = numbers;
-    this.listener.record(numbers);
+    this.listener.record(numbers, present);
   }
 }

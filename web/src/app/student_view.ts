@@ -148,13 +148,13 @@ export class StudentView {
   }
 
   /** Records the numbers of a sample of the session. */
-  record(numbers: Frame): void {
-    this.history.add(numbers.time, valuesOf(numbers));
+  record(numbers: Frame, present: boolean): void {
+    this.history.add(numbers.time, valuesOf(numbers), present);
   }
 
   /** Records the numbers of a sample of the session beside. */
-  recordBeside(numbers: Frame): void {
-    this.besideHistory.add(numbers.time, valuesOf(numbers));
+  recordBeside(numbers: Frame, present: boolean): void {
+    this.besideHistory.add(numbers.time, valuesOf(numbers), present);
   }
 
   /** Reads from a frame of the session which graphs there are. */

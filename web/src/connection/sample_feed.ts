@@ -17,8 +17,11 @@ const callTimeout = 8000;
 
 /** Receives what a feed reads. */
 export interface SampleListener {
-  /** The numbers of one sample, as a frame without positions. */
-  sample(numbers: Frame): void;
+  /**
+   * The numbers of one sample, as a frame without positions. `present` is true for the state when reading began, which lies
+   * between two samples.
+   */
+  sample(numbers: Frame, present: boolean): void;
   /** So many samples before the next one are missing: the page was too slow. */
   leftOut?(count: number): void;
 }
@@ -94,8 +97,8 @@ export class SampleFeed {
     if (batch.quantities.length > 0) this.quantities = batch.quantities;
     this.position = { track: batch.track, last: batch.last };
     if (batch.leftOut > 0n) this.listener.leftOut?.(Number(batch.leftOut));
-    if (batch.present !== undefined) this.listener.sample(this.numbers(batch.present));
-    for (const sample of batch.samples) this.listener.sample(this.numbers(sample));
+    if (batch.present !== undefined) this.listener.sample(this.numbers(batch.present), true);
+    for (const sample of batch.samples) this.listener.sample(this.numbers(sample), false);
     return batch.samples.length > 0;
   }
 

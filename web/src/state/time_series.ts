@@ -3,10 +3,17 @@ export class TimeSeries {
   readonly times: number[] = [];
   readonly series = new Map<string, number[]>();
 
+  private provisional = false;
+
   constructor(readonly span: number) {}
 
-  /** Adds values at `time` [s]. Starts again if time goes back or the names change. */
-  add(time: number, values: [name: string, value: number][]): void {
+  /**
+   * Adds values at `time` [s]. Starts again if time goes back or the names change. `provisional` values stay until the
+   * next ones are added.
+   */
+  add(time: number, values: [name: string, value: number][], provisional = false): void {
+    if (this.provisional) this.removeLast();
+    this.provisional = provisional;
     const last = this.times.at(-1);
     if (last !== undefined && time === last) return;
     const known = [...this.series.keys()];
@@ -31,6 +38,11 @@ export class TimeSeries {
   /** Removes all values and names. */
   clear(): void {
     this.restart([]);
+  }
+
+  private removeLast(): void {
+    this.times.pop();
+    for (const each of this.series.values()) each.pop();
   }
 
   private restart(names: string[]): void {

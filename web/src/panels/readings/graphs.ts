@@ -54,8 +54,8 @@ export class GraphsPanel {
   }
 
   /** Records the numbers of a sample. */
-  record(numbers: Frame): void {
-    this.history.add(numbers.time, valuesOf(numbers));
+  record(numbers: Frame, present: boolean): void {
+    this.history.add(numbers.time, valuesOf(numbers), present);
   }
 
   /** Reads from a frame which graphs there are. */
