@@ -15,8 +15,8 @@ class InStepTest : public testing::Test {
     Session::Fork start{model_->parameters, model_->InitialState(), model_->report.stable_step().seconds()};
     return std::make_unique<Session>(id, model_, std::move(start), clock_, Limits{});
   }
-  // Advances the clock frame by frame until `condition` holds. A session on a stalled machine skips what it cannot catch
-  // up with, so that no number of frames is enough everywhere. Returns false after ten seconds of real time.
+  // Advances the clock frame by frame until `condition` holds. A session on a stalled machine skips what it cannot
+  // catch up with, so that no number of frames is enough everywhere. Returns false after ten seconds of real time.
   template <class Condition>
   bool PassUntil(const Condition& condition) {
     return Eventually([&] {
