@@ -27,8 +27,8 @@ double Smoothstep(double t) {
 // Returns the distance within which a driver has a share, given the least softened distance so far [m^2]: beyond it
 // (least / softened)^2 is below kSmallestShare.
 double ShareReach(double least) {
-  constexpr double kRounding = 1 + 1e-9;  // above rounding errors
-  return std::sqrt(least / std::sqrt(kSmallestShare)) * kRounding;
+  constexpr double kAboveRounding = 1 + 1e-9;  // above rounding errors
+  return std::sqrt(least / std::sqrt(kSmallestShare)) * kAboveRounding;
 }
 
 std::vector<int> Those(const ModelBuilder& builder, const std::vector<int>& bodies, bool deformable) {
