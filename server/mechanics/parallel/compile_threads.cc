@@ -6,6 +6,8 @@
 #include <thread>
 #include <vector>
 
+#include "server/schema/thread_priority.h"
+
 namespace phrenic {
 namespace {
 
@@ -43,7 +45,10 @@ void ForEachPartUntil(std::int64_t parts, absl::FunctionRef<bool()> stopped,
   const std::int64_t threads = std::min<std::int64_t>(CompileThreads(), parts);
   for (std::int64_t i = 1; i < threads; ++i) {
     try {
-      others.emplace_back(take, false);
+      others.emplace_back([&take] {
+        LowerThreadPriority();  // below sessions that play
+        take(false);
+      });
     } catch (const std::system_error&) {  // the system has no more threads: those that run do the work
       break;
     }

@@ -69,15 +69,16 @@ std::vector<int> BreadthFirst(const Adjacency& beside) {
 // Neighbours earlier in the order, then their neighbours, each once.
 Chosen Choose(const Adjacency& beside, const std::vector<int>& place, int vertex) {
   Chosen chosen;
-  const auto add = [&](int candidate) {
-    if (chosen.size() == kMostNeighbours || place[candidate] >= place[vertex]) return;
-    if (std::find(chosen.begin(), chosen.end(), candidate) == chosen.end()) chosen.push_back(candidate);
+  const auto add_from = [&](const auto& candidates) {
+    for (const int candidate : candidates) {
+      if (chosen.size() == kMostNeighbours) return;
+      const bool is_new = std::find(chosen.begin(), chosen.end(), candidate) == chosen.end();
+      if (is_new && place[candidate] < place[vertex]) chosen.push_back(candidate);
+    }
   };
-  for (const int neighbour : beside[vertex]) add(neighbour);
+  add_from(beside[vertex]);
   const std::size_t near = chosen.size();
-  for (std::size_t i = 0; i < near; ++i) {
-    for (const int neighbour : beside[chosen[i]]) add(neighbour);
-  }
+  for (std::size_t i = 0; i < near && chosen.size() < kMostNeighbours; ++i) add_from(beside[chosen[i]]);
   return chosen;
 }
 

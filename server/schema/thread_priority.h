@@ -1,11 +1,11 @@
 // The priority of background threads.
-#ifndef PHRENIC_SERVER_JOBS_THREAD_PRIORITY_H_
-#define PHRENIC_SERVER_JOBS_THREAD_PRIORITY_H_
+#ifndef PHRENIC_SERVER_SCHEMA_THREAD_PRIORITY_H_
+#define PHRENIC_SERVER_SCHEMA_THREAD_PRIORITY_H_
 
 #include <sys/resource.h>
 #include <unistd.h>
 
-namespace phrenic::jobs {
+namespace phrenic {
 
 // Lowers the priority of the calling thread, and of threads that it starts from now on, below that of sessions and
 // calls (setpriority(2) with nice 5; on Linux it is the thread's own). Changes nothing where the system forbids it.
@@ -14,6 +14,6 @@ inline void LowerThreadPriority() {
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
 }
 
-}  // namespace phrenic::jobs
+}  // namespace phrenic
 
-#endif  // PHRENIC_SERVER_JOBS_THREAD_PRIORITY_H_
+#endif  // PHRENIC_SERVER_SCHEMA_THREAD_PRIORITY_H_
