@@ -1,6 +1,7 @@
 // `phrenic watch`: prints a session's values as they change and, with --codec, the size of its frames.
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <optional>
@@ -136,8 +137,9 @@ class SampleWatcher {
     if (options_.seconds > 0) call.set_deadline(end_);
     const Interruption::Scope scope(*context_.interruption, call);
     const auto stream = stub_->WatchSamples(&call, request_);
-    for (v1::WatchSamplesResponse response; stream->Read(&response) && !Enough();) {
+    for (v1::WatchSamplesResponse response; !Enough() && stream->Read(&response);) {
       received();
+      NotePosition(response.batch());
       Print(response.batch());
     }
     printer_->Detach();
@@ -149,6 +151,15 @@ class SampleWatcher {
  private:
   bool Enough() const { return options_.count > 0 && printed_ >= options_.count; }
 
+  // The next connection goes on from here, if the server still has this track then; else it reports the gap.
+  void NotePosition(const v1::SampleBatch& batch) {
+    if (request_.track() != 0 && batch.track() != request_.track()) {
+      std::cerr << "phrenic: samples are missing here: the server did not keep those since the connection was lost\n";
+    }
+    request_.set_track(batch.track());
+    request_.set_last(batch.last());
+  }
+
   void Print(const v1::SampleBatch& batch) {
     if (batch.quantities_size() > 0) quantities_ = {batch.quantities().begin(), batch.quantities().end()};
     if (batch.left_out() > 0) std::cerr << "phrenic: " << batch.left_out() << " samples were left out\n";
@@ -159,7 +170,8 @@ class SampleWatcher {
       frame.set_tick(sample.tick());
       frame.set_time(sample.time());
       frame.set_breath(sample.breath());
-      for (std::size_t i = 0; i < quantities_.size(); ++i) {
+      const std::size_t values = std::min(quantities_.size(), static_cast<std::size_t>(sample.values_size()));
+      for (std::size_t i = 0; i < values; ++i) {
         v1::MeasureReading& reading = *frame.add_measures();
         reading.set_name(quantities_[i].name());
         reading.set_unit(quantities_[i].unit());
@@ -222,8 +234,9 @@ CommandFunction SetUpWatch(CLI::App& command) {
   command.add_option("--count", options->count, "stop after this many lines");
   command.add_option("--fps", options->frames_per_second, "lines per second, at most")->capture_default_str();
   command
-      .add_option("--every", options->every,
-                  "print the measures at every such interval of simulated time [s], none left out, whatever --fps says")
+      .add_option(
+          "--every", options->every,
+          "print the measures at every such interval of simulated time [s], whatever --fps says; gaps are reported")
       ->check(NumberIn(1e-3, 60.0));
   command.add_option("--measure", options->measures, "with --every: print this measure only; may be repeated")
       ->type_name("NAME")

@@ -50,7 +50,7 @@ constexpr Rule kRules[] = {
     {"FrameService.AckFrames", kNone, kViewer, kReads, !kOpen, true},
     {"FrameService.GetForces", kNone, kViewer, kReads},
     {"SampleService.WatchSamples", kNone, kViewer, kReads},
-    {"SampleService.ReadSamples", kNone, kViewer, kReads, !kOpen, true},
+    {"SampleService.ReadSamples", kNone, kViewer, kReads, !kOpen, true},  // it counts the costly calls itself
     {"TissueService.GetTissue", kNone, kViewer, kReads},
     {"TissueService.ReadTissue", kNone, kViewer, kReads},
     {"ReferenceService.GetReferences", kNone, kViewer, kReads},

@@ -17,7 +17,7 @@ struct Rule {
   v1::AccessRole in_session = v1::ACCESS_ROLE_UNSPECIFIED;  // required in the session of session_id
   bool changes = false;                                     // admitted calls are written to the audit log
   bool open = false;                                        // needs neither account nor link
-  bool uncounted = false;  // exempt from the rate limit, because it is frequent and cheap
+  bool uncounted = false;  // exempt from the rate limit, because it is frequent and mostly cheap
 };
 
 // Returns all rules. All functions are thread-safe. The table is constant.

@@ -22,12 +22,12 @@ std::string ResponseOf(const v1::SubmitAnswerRequest& answer) {
 
 std::string IssuerOf(const Learner& learner) { return learner.platform.substr(0, learner.platform.find(' ')); }
 
-// Returns the number of right answers to the lesson's questions; nothing while one has no answer, or if it has none. An
-// answer to a step that is no question any more does not count.
+// Returns the number of right answers to the lesson's graded questions; nothing while one has no answer, or if it has
+// none. An answer to a step that is no question any more does not count.
 std::optional<int> ScoreOf(const Learner::Assignment& assignment, const v1::Lesson& lesson) {
   int score = 0;
   for (int step = 1; step <= lesson.steps_size(); ++step) {
-    if (!lesson.steps(step - 1).has_question()) continue;
+    if (!IsGraded(lesson.steps(step - 1))) continue;
     const auto answer = assignment.right.find(step);
     if (answer == assignment.right.end()) return std::nullopt;
     if (answer->second) ++score;
@@ -158,7 +158,7 @@ void Grading::Answered(const v1::SubmitAnswerRequest& answer, absl::Time now) {
   if (same) return;
   assignment->second.right[answer.step()] = *right;
   Save(learner);
-  ReportScore(learner, answer.lesson(), *lesson, now);
+  if (IsGraded(lesson->steps(answer.step() - 1))) ReportScore(learner, answer.lesson(), *lesson, now);
 }
 
 std::map<std::string, std::string> Grading::Users(const std::string& session) const {

@@ -26,9 +26,9 @@ std::string KeyOf(const Platform& platform);
 // Thread-safe. Keeps the 10,000 learners who launched last, also over a restart if there is a store.
 //
 // The score of a lesson is the number of its questions whose last answer is right, by the lesson's file on this server;
-// what a page says of its own answers does not count. It is sent once all questions have an answer, and again at each
-// change, and to another line item when the lesson is opened from another activity. Answers of the test before a lesson
-// do not count, those of the test after it do.
+// what a page says of its own answers does not count, nor do predicted curves (IsGraded). It is sent once all other
+// questions have an answer, and again at each change, and to another line item when the lesson is opened from another
+// activity. Answers of the test before a lesson do not count, those of the test after it do.
 class Grading {
  public:
   // All outlive it. `url` is this server's origin. Either outbox is null if nothing is reported there.
@@ -60,7 +60,7 @@ class Grading {
   void Save(const Learner& learner) const;
   void ReportAnswer(const Learner& learner, const v1::SubmitAnswerRequest& answer, const v1::Lesson& lesson, bool right,
                     absl::Time now) const;
-  // States that a lesson all of whose questions have an answer is completed, and sends its score.
+  // States that a lesson all of whose graded questions have an answer is completed, and sends its score.
   void ReportScore(const Learner& learner, const std::string& name, const v1::Lesson& lesson, absl::Time now) const;
   // Sends the score of such a lesson to its line item.
   void SendScore(const Learner& learner, const std::string& name, const v1::Lesson& lesson, absl::Time now) const;

@@ -45,9 +45,10 @@ std::vector<std::pair<std::string, v1::Lesson>> Lessons::List() const {
   return lessons;
 }
 
+bool IsGraded(const v1::LessonStep& step) { return step.has_question() && !step.question().has_prediction(); }
+
 int QuestionCount(const v1::Lesson& lesson) {
-  return static_cast<int>(std::count_if(lesson.steps().begin(), lesson.steps().end(),
-                                        [](const v1::LessonStep& step) { return step.has_question(); }));
+  return static_cast<int>(std::count_if(lesson.steps().begin(), lesson.steps().end(), IsGraded));
 }
 
 absl::StatusOr<bool> IsRight(const v1::Lesson& lesson, const v1::SubmitAnswerRequest& answer) {

@@ -27,7 +27,11 @@ class Lessons {
   const std::string folder_;
 };
 
-// Returns the number of questions of a lesson.
+// True if the step has a question whose answer counts towards the score. A prediction's does not: it needs control of
+// the session, which learners may not have.
+bool IsGraded(const v1::LessonStep& step);
+
+// Returns the number of such questions of a lesson, its highest score.
 int QuestionCount(const v1::Lesson& lesson);
 
 // True if the answer is right by the lesson's question of its step. NOT_FOUND if the step has no question.

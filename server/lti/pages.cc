@@ -55,7 +55,7 @@ unsigned HttpStatusOf(const absl::Status& status) {
 std::string LessonRow(const std::string& name, const v1::Lesson& lesson, bool first) {
   const int questions = QuestionCount(lesson);
   const std::string count =
-      questions == 0 ? "no questions" : absl::StrCat(questions, questions == 1 ? " question" : " questions");
+      questions == 0 ? "no questions that count" : absl::StrCat(questions, questions == 1 ? " question" : " questions");
   return absl::StrCat("<label><input type=\"radio\" name=\"lesson\" value=\"", HtmlText(name), "\"",
                       first ? " checked" : "", "><span><b>", HtmlText(lesson.title()), "</b> (", count, ")<br>",
                       HtmlText(lesson.summary()), "</span></label>");

@@ -39,7 +39,8 @@ SampleReactor::Next SampleReactor::TakeBatch() {
   }
   busy_ = true;
   more_ = read->more();
-  if (IsEmpty(read->batch())) return {.wait = true};
+  const bool first = std::exchange(first_, false);  // sent even if empty: the client learns that it is connected
+  if (!first && IsEmpty(read->batch())) return {.wait = true};
   v1::WatchSamplesResponse response;
   *response.mutable_batch() = std::move(*read->mutable_batch());
   buffer_ = Serialize(response);
@@ -93,10 +94,13 @@ void SampleReactor::OnCancel() {
 void SampleReactor::OnDone() {
   std::optional<SampleReader> reader;
   Subscription subscription;
-  absl::MutexLock lock(&mutex_);
-  std::swap(reader, reader_);
-  std::swap(subscription, subscription_);
-  alarm_ = nullptr;
+  {
+    absl::MutexLock lock(&mutex_);
+    std::swap(reader, reader_);
+    std::swap(subscription, subscription_);
+    alarm_ = nullptr;
+  }
+  if (reader.has_value()) reader->Keep(kKept);
 }
 
 }  // namespace phrenic::service

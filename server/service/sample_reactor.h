@@ -27,6 +27,9 @@ class SampleReactor final : public StreamEvents, public std::enable_shared_from_
     std::function<bool()> may_see;  // checked before each message; null: always allowed
   };
 
+  // How long sampling goes on after a stream, so that one that was lost can be resumed.
+  static constexpr absl::Duration kKept = absl::Seconds(15);
+
   // The call outlives the stream. Make it in a shared pointer.
   SampleReactor(ServedCall& call, SampleReader reader, Subscription subscription)
       : call_(call), reader_(std::move(reader)), subscription_(std::move(subscription)) {}
@@ -60,6 +63,7 @@ class SampleReactor final : public StreamEvents, public std::enable_shared_from_
   Subscription subscription_ ABSL_GUARDED_BY(mutex_);           // until OnDone
   std::unique_ptr<grpc::Alarm> alarm_ ABSL_GUARDED_BY(mutex_);  // of the wait
   bool busy_ ABSL_GUARDED_BY(mutex_) = false;                   // a write or a wait is in progress
+  bool first_ ABSL_GUARDED_BY(mutex_) = true;                   // no message was written
   bool more_ ABSL_GUARDED_BY(mutex_) = false;                   // samples wait already
   bool cancelled_ ABSL_GUARDED_BY(mutex_) = false;              // by the client, or a write has failed
   bool finished_ ABSL_GUARDED_BY(mutex_) = false;

@@ -57,14 +57,16 @@ absl::StatusOr<SampleSelection> SelectSamples(const stream::Sampler& sampler,
 }
 
 absl::StatusOr<SampleReader> SampleReader::Open(std::shared_ptr<session::Session> session, SampleSelection selection,
-                                                std::int64_t track, std::int64_t last, absl::Duration keep) {
+                                                const SamplePosition& position, absl::Duration keep,
+                                                absl::FunctionRef<absl::Status()> may_begin) {
   auto found = session->sampler().Track(selection.interval, keep);
   if (!found.ok()) return found.status();
   SampleReader reader(std::move(session), std::move(selection));
   reader.track_ = *std::move(found);
-  reader.describes_ = reader.track_->id() != track;
-  reader.last_ = reader.describes_ ? reader.track_->newest() : last;
+  reader.describes_ = reader.track_->id() != position.track;
+  reader.last_ = reader.describes_ ? reader.track_->newest() : position.last;
   if (!reader.describes_) return reader;
+  if (absl::Status may = may_begin(); !may.ok()) return may;
   const auto present = reader.session_->ReadState();
   if (present.ok()) {
     reader.present_ = std::make_shared<const stream::Sample>(
@@ -93,6 +95,10 @@ absl::StatusOr<v1::ReadSamplesResponse> SampleReader::Next() {
   batch.set_track(track_->id());
   batch.set_last(last_ = part.last);
   return response;
+}
+
+void SampleReader::Keep(absl::Duration keep) const {
+  session_->sampler().Track(selection_.interval, keep).status().IgnoreError();  // the session may have ended
 }
 
 void SampleReader::Write(const stream::Sample& sample, v1::Sample& message) const {

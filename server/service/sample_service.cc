@@ -15,8 +15,8 @@
 namespace phrenic::service {
 namespace {
 
-// How long sampling goes on after a stream, and after a read: a browser's hidden page may call once a minute.
-constexpr absl::Duration kAfterStream = absl::Seconds(2), kAfterRead = absl::Seconds(75);
+// How long sampling goes on after a read: a browser's hidden page may call once a minute.
+constexpr absl::Duration kAfterRead = absl::Seconds(75);
 
 template <class Request>
 absl::StatusOr<SampleSelection> SelectionOf(const stream::Sampler& sampler, const Request& request) {
@@ -61,7 +61,9 @@ absl::Status SampleService::WatchSamples(ServedCall& call) {
   auto seats = TakeSeats(admitted->caller, request.session_id());
   if (!seats.ok()) return seats.status();
   auto may_see = guard_.StillMaySee(admitted->caller, *admitted->session);
-  auto reader = SampleReader::Open(std::move(admitted->session), *std::move(selection), 0, 0, kAfterStream);
+  auto reader =
+      SampleReader::Open(std::move(admitted->session), *std::move(selection), {request.track(), request.last()},
+                         SampleReactor::kKept, [] { return absl::OkStatus(); });
   if (!reader.ok()) return reader.status();
   std::make_shared<SampleReactor>(call, *std::move(reader),
                                   SampleReactor::Subscription{*std::move(seats), std::move(may_see)})
@@ -75,8 +77,8 @@ grpc::Status SampleService::ReadSamples(grpc::CallbackServerContext* context, co
   if (!call.ok()) return ToGrpc(call.status());
   auto selection = SelectionOf(call->session->sampler(), *request);
   if (!selection.ok()) return ToGrpc(selection.status());
-  auto reader = SampleReader::Open(std::move(call->session), *std::move(selection), request->track(), request->last(),
-                                   kAfterRead);
+  auto reader = SampleReader::Open(std::move(call->session), *std::move(selection), {request->track(), request->last()},
+                                   kAfterRead, [&] { return guard_.CountCall(call->caller); });
   if (!reader.ok()) return ToGrpc(reader.status());
   auto read = reader->Next();
   if (!read.ok()) return ToGrpc(read.status());

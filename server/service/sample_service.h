@@ -23,7 +23,8 @@ class SampleService final {
   // Adds the methods to the table. The service outlives it.
   void AddTo(CallTable& calls);
 
-  // On Lane::kSession: the first read waits for the step in progress. Not counted towards the rate of requests.
+  // On Lane::kSession: a read without a valid position waits for the step in progress, and alone counts towards the
+  // rate of requests.
   grpc::Status ReadSamples(grpc::CallbackServerContext* context, const v1::ReadSamplesRequest* request,
                            v1::ReadSamplesResponse* response);
 

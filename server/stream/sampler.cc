@@ -45,10 +45,12 @@ absl::StatusOr<std::shared_ptr<const SampleTrack>> Sampler::Track(double interva
     return entry.track;
   }
   DropUnread();
-  if (tracks_.size() >= kMostTracks) {
-    return absl::ResourceExhaustedError(absl::StrCat("interval: the session is sampled at ", tracks_.size(),
-                                                     " other intervals, and no more are allowed; use one of ",
-                                                     tracks_[0].track->interval(), " s, or try again later"));
+  const auto others = std::count_if(tracks_.begin(), tracks_.end(),
+                                    [](const Entry& entry) { return entry.track->interval() != kDefaultInterval; });
+  if (interval != kDefaultInterval && others >= static_cast<std::ptrdiff_t>(kMostTracks)) {
+    return absl::ResourceExhaustedError(absl::StrCat("interval: the session is sampled at ", others,
+                                                     " other intervals, and no more are allowed; use the default of ",
+                                                     kDefaultInterval, " s, or try again later"));
   }
   last_id_ = std::max(last_id_ + 1, absl::ToUnixNanos(now));
   tracks_.push_back({std::make_shared<SampleTrack>(last_id_, interval), now + keep});

@@ -30,8 +30,8 @@ class Sampler {
   const std::vector<v1::SampledQuantity>& quantities() const { return quantities_; }
 
   // Returns the track of an interval [simulated s], and makes it if it is new. It is kept as long as the result
-  // exists, and for `keep` after this call. RESOURCE_EXHAUSTED, naming the field, above kMostTracks intervals; the
-  // reason of Close after Close.
+  // exists, and for `keep` after this call. RESOURCE_EXHAUSTED, naming the field, above kMostTracks intervals other
+  // than kDefaultInterval, which is always admitted; the reason of Close after Close.
   absl::StatusOr<std::shared_ptr<const SampleTrack>> Track(double interval, absl::Duration keep)
       ABSL_LOCKS_EXCLUDED(mutex_);
   // Returns the sample of a state. Any thread.
@@ -66,7 +66,7 @@ class Sampler {
   const Clock& clock_;
   const std::vector<v1::SampledQuantity> quantities_;
   mutable absl::Mutex mutex_;
-  std::vector<Entry> tracks_ ABSL_GUARDED_BY(mutex_);  // at most kMostTracks
+  std::vector<Entry> tracks_ ABSL_GUARDED_BY(mutex_);  // at most kMostTracks + 1
   std::optional<absl::Status> closed_ ABSL_GUARDED_BY(mutex_);
   std::int64_t last_id_ ABSL_GUARDED_BY(mutex_) = 0;
   // The smallest next_due of all tracks [simulated s]; infinity without a track. Written under the mutex.
@@ -74,7 +74,10 @@ class Sampler {
   std::atomic<std::int64_t> evaluations_ = 0;
 };
 
-// Most intervals of one session at a time.
+// The interval of graphs [simulated s]. Pages depend on it, so that other readers cannot take its place.
+inline constexpr double kDefaultInterval = 0.02;
+
+// Most other intervals of one session at a time.
 inline constexpr std::size_t kMostTracks = 4;
 
 }  // namespace phrenic::stream

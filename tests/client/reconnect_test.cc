@@ -58,6 +58,28 @@ TEST(Reconnect, AWatchResumesAfterARestartAndReportsIt) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 41) << "a header and forty frames";
 }
 
+// A restarted server has no samples of before.
+TEST(Reconnect, AWatchOfSamplesReportsTheGapOfARestart) {
+  RunningServer server(Scratch("reconnect_samples"));
+  const auto at = [&server](std::vector<std::string> words) {
+    words.insert(words.end(), {"--server", server.address()});
+    return words;
+  };
+  ASSERT_EQ(Phrenic(at({"create", "sheet-2d", "--id", "class", "--play"})).code, 0);
+  const std::string lines = Scratch("sampled.csv"), said = Scratch("sampled.err");
+  const pid_t client =
+      Start("phrenic", at({"watch", "class", "--every", "0.02", "--count", "100", "-o", "csv"}), lines, said);
+  while (ReadAll(lines).empty()) usleep(20'000);
+  server.Kill();
+  const absl::Status back = server.Restart();
+  ASSERT_TRUE(back.ok()) << back;
+  EXPECT_EQ(Phrenic(at({"play", "class"})).code, 0);
+  EXPECT_EQ(WaitFor(client), 0) << ReadAll(said);
+  EXPECT_THAT(ReadAll(said), HasSubstr("is back\nphrenic: samples are missing here"));
+  const std::string csv = ReadAll(lines);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 101) << "a header and a hundred samples";
+}
+
 TEST(Reconnect, AServerThatAnswersIsNotReportedAsMissing) {
   RunningServer server;
   Context context;

@@ -1,6 +1,7 @@
 // The commands for sessions of a running server.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tests/client/programs.h"
@@ -174,6 +175,27 @@ TEST_F(Sessions, WatchPrintsEverySampleOfSimulatedTime) {
   EXPECT_THAT(Ask({"watch", "seen", "--every", "0.01", "--measure", "x"}).err, HasSubstr("measures[0]"));
   EXPECT_EQ(Ask({"watch", "seen", "--measure", "x"}).code, 2);
   EXPECT_EQ(Ask({"watch", "seen", "--every", "0.01", "--lungs"}).code, 2);
+}
+
+// The session is stepped no further than the last line's sample.
+TEST_F(Sessions, WatchEndsWithTheLastLineAlsoIfTheSessionPauses) {
+  ASSERT_EQ(Ask({"create", "hanging-sheet", "--id", "seen", "--set", "time_step=0.0005"}).code, 0);
+  const std::string out = Scratch("counted.csv"), said = Scratch("counted.err");
+  const pid_t client =
+      Start("phrenic", {"watch", "seen", "--every", "0.01", "--count", "4", "-o", "csv", "--server", server_.address()},
+            out, said);
+  const auto lines = [&out] {
+    const std::string csv = ReadAll(out);
+    return std::count(csv.begin(), csv.end(), '\n');
+  };
+  for (int i = 0; i < 100 && lines() < 2; ++i) {  // until a header and a sample are there: it watches
+    ASSERT_EQ(Ask({"step", "seen", "20"}).code, 0);
+    usleep(300'000);
+  }
+  const auto rest = 5 - lines();
+  for (int i = 0; i < rest; ++i) ASSERT_EQ(Ask({"step", "seen", "20"}).code, 0);
+  EXPECT_EQ(WaitFor(client), 0) << ReadAll(said);
+  EXPECT_EQ(lines(), 5);
 }
 
 TEST_F(Sessions, ExportDoesNotChangeTheSession) {

@@ -39,6 +39,11 @@ class GradingTest : public testing::Test {
     answer.set_number(number);
     grading_.Answered(answer, kExampleNow);
   }
+  // Waits for a score.
+  bool Arrives() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
+    const auto arrived = [this]() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return !sent_.empty(); };
+    return mutex_.AwaitWithTimeout(absl::Condition(&arrived), absl::Seconds(5));
+  }
   static absl::Status Keep(const Parcel&) { return absl::UnavailableError("away"); }
 
   const std::string folder_ = absl::StrCat(testing::TempDir(), "/phrenic-grading-", getpid());
@@ -69,10 +74,28 @@ TEST_F(GradingTest, NoScoreIsAboveTheQuestionsOfThePresentLesson) {
   }
   Answer(3, 3);
   absl::MutexLock lock(&mutex_);
-  const auto arrived = [this]() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return !sent_.empty(); };
-  ASSERT_TRUE(mutex_.AwaitWithTimeout(absl::Condition(&arrived), absl::Seconds(5)));
+  ASSERT_TRUE(Arrives());
   EXPECT_EQ(sent_.back()["scoreGiven"], 2);
   EXPECT_EQ(sent_.back()["scoreMaximum"], 2);
+}
+
+// Learners may not play the breath, so that a predicted curve can stay without an answer.
+TEST_F(GradingTest, APredictedCurveDoesNotCount) {
+  Write(R"({"steps":[{"question":{"number":{"value":1}}},
+                     {"question":{"prediction":{"measure":"lung volume","tolerance":0.2}}}]})");
+  Enter();
+  Answer(1, 1);
+  const std::size_t stated = statements_.size();
+  {
+    absl::MutexLock lock(&mutex_);
+    ASSERT_TRUE(Arrives());
+    EXPECT_EQ(sent_.back()["scoreGiven"], 1);
+    EXPECT_EQ(sent_.back()["scoreMaximum"], 1);
+  }
+  Answer(2, 0.1);
+  EXPECT_EQ(statements_.size(), stated + 1) << "the answer alone is stated, no score again";
+  absl::MutexLock lock(&mutex_);
+  EXPECT_EQ(sent_.size(), 1U);
 }
 
 TEST_F(GradingTest, ARepeatedAnswerIsStatedOnce) {

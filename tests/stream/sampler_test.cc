@@ -124,12 +124,22 @@ TEST_F(SamplerTest, ASlowReaderIsToldHowManySamplesItMissed) {
 }
 
 TEST_F(SamplerTest, AFifthIntervalIsRefusedUntilOneIsFree) {
-  for (int i = 1; i <= static_cast<int>(kMostTracks); ++i) Track(0.01 * i, absl::Seconds(1));
+  Track(kDefaultInterval, absl::Seconds(1));  // does not count
+  for (int i = 1; i <= static_cast<int>(kMostTracks); ++i) Track(0.1 * i, absl::Seconds(1));
   const auto refused = sampler_.Track(1, absl::Seconds(1));
   EXPECT_TRUE(absl::IsResourceExhausted(refused.status())) << refused.status();
   EXPECT_EQ(refused.status().message().substr(0, 9), "interval:");
   clock_.Advance(absl::Seconds(2));
   EXPECT_TRUE(sampler_.Track(1, absl::Seconds(1)).ok());
+}
+
+TEST_F(SamplerTest, TheDefaultIntervalIsAlwaysAdmitted) {
+  std::vector<std::shared_ptr<const SampleTrack>> others;
+  for (int i = 1; i <= static_cast<int>(kMostTracks); ++i) others.push_back(Track(0.1 * i));
+  EXPECT_FALSE(sampler_.Track(1, absl::Seconds(1)).ok());
+  const auto graphs = Track(kDefaultInterval);
+  Step(100, 0.001);
+  EXPECT_EQ(graphs->newest(), 5);
 }
 
 TEST_F(SamplerTest, ReadersReadWhileTheSessionSteps) {

@@ -150,9 +150,13 @@ absl::Status AccessGuard::CheckRule(const Rule& rule, const Caller& caller, cons
 }
 
 // Calls from this machine without an account come from its operator and are not limited.
-absl::Status AccessGuard::CheckRate(const Rule& rule, const Caller& caller) {
-  if (rule.uncounted || (!caller.known() && IsThisMachine(caller.peer))) return absl::OkStatus();
+absl::Status AccessGuard::CountCall(const Caller& caller) {
+  if (!caller.known() && IsThisMachine(caller.peer)) return absl::OkStatus();
   return rate_.Take(caller.known() ? "account " + caller.account.name : caller.peer, absl::Now());
+}
+
+absl::Status AccessGuard::CheckRate(const Rule& rule, const Caller& caller) {
+  return rule.uncounted ? absl::OkStatus() : CountCall(caller);
 }
 
 bool AccessGuard::IsKnown(const Caller& caller) const {

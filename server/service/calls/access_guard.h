@@ -67,6 +67,10 @@ class AccessGuard {
   // empty name only towards the limit of all callers.
   std::string ShareOf(const access::Caller& caller) const;
 
+  // Counts one more call of an admitted caller towards its rate: one whose rule says `uncounted`, but which turned out
+  // to be costly. RESOURCE_EXHAUSTED above the rate. Does not count this machine's calls without an account.
+  absl::Status CountCall(const access::Caller& caller);
+
   // True if calls need an account. Constant while the server runs.
   bool guarded() const { return accounts_.required(); }
   // True if the caller has at least the role of a viewer in the session: as an administrator, as the account that owns
@@ -117,8 +121,7 @@ class AccessGuard {
   // role there is too low. OK for administrators, also for a session that does not exist: the service reports that.
   absl::Status CheckSessionRole(const access::Rule& rule, const access::Caller& caller,
                                 const std::string& session) const;
-  // RESOURCE_EXHAUSTED above the rate of the account, or of the address without one. Does not count this machine's
-  // calls without an account, nor methods whose rule says `uncounted`.
+  // As CountCall, unless the method's rule says `uncounted`.
   absl::Status CheckRate(const access::Rule& rule, const access::Caller& caller);
   // Returns the highest role that the caller has in the session; unspecified if it may not see it.
   v1::AccessRole RoleIn(const access::Caller& caller, const session::Session& session) const;

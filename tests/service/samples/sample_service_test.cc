@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "phrenic/v1/samples.grpc.pb.h"
-#include "tests/service/server_fixture.h"
+#include "tests/service/guarded_server.h"
 
 namespace phrenic::service {
 namespace {
@@ -279,6 +279,25 @@ TEST_F(SampleServiceTest, AnUnknownPositionBeginsNow) {
   }
 }
 
+// A paused session sends no sample that would show that the connection is back.
+TEST_F(SampleServiceTest, ALostStreamIsResumedWithoutAGap) {
+  v1::SampleBatch batch;
+  {
+    SampleWatch lost(NewChannel(), "session_id: 'sheet' interval: 0.007");
+    ASSERT_TRUE(lost.Read(&batch));
+  }
+  const std::string at =
+      absl::StrCat("session_id: 'sheet' interval: 0.007 track: ", batch.track(), " last: ", batch.last());
+  ASSERT_TRUE(Session(&Sessions::StepSession, "session_id: 'sheet' ticks: 140").ok());
+  SampleWatch resumed(NewChannel(), at);
+  EXPECT_EQ(resumed.ReadTo(140).size(), 10u);
+  EXPECT_EQ(resumed.left_out(), 0);
+  SampleWatch nothing_new(NewChannel(), absl::StrCat(at.substr(0, at.find(" last:")), " last: 10"));
+  ASSERT_TRUE(nothing_new.Read(&batch));
+  EXPECT_EQ(batch.samples_size() + batch.quantities_size(), 0);
+  EXPECT_FALSE(batch.has_present());
+}
+
 // The stream's seats are limited as those of frames are, and do not take theirs.
 TEST_F(SampleServiceTest, StreamsHaveSeatsOfTheirOwn) {
   Watch a(NewChannel(), "sheet"), b(NewChannel(), "sheet"), c(NewChannel(), "sheet");
@@ -291,6 +310,34 @@ TEST_F(SampleServiceTest, StreamsHaveSeatsOfTheirOwn) {
   SampleWatch fourth(NewChannel(), "session_id: 'sheet'");
   EXPECT_FALSE(fourth.Read(&batch));
   EXPECT_EQ(fourth.Finish().error_code(), grpc::RESOURCE_EXHAUSTED);
+}
+
+class SampleRateTest : public GuardedServer {
+ protected:
+  SampleRateTest() { options_.max_requests = 5; }
+
+  grpc::Status Read(const std::string& position, v1::ReadSamplesResponse* read) {
+    return CallAs({"owner"}, *samples_, &Samples::ReadSamples, "session_id: 'mine' " + position, read);
+  }
+  void SetUp() override {
+    GuardedServer::SetUp();
+    samples_ = v1::SampleService::NewStub(channel_);
+    ASSERT_EQ(Create("owner", "mine"), grpc::OK);
+  }
+
+  std::unique_ptr<Samples> samples_;
+};
+
+// They alone wait for the stepping thread.
+TEST_F(SampleRateTest, ReadsWithoutAPositionCountTowardsTheRate) {
+  v1::ReadSamplesResponse read;
+  ASSERT_TRUE(Read("", &read).ok());
+  const std::string at = absl::StrCat("track: ", read.batch().track(), " last: ", read.batch().last());
+  grpc::Status refused;
+  for (int i = 0; i < 1000 && refused.ok(); ++i) refused = Read(i % 2 == 0 ? "" : "track: 7", &read);
+  EXPECT_EQ(refused.error_code(), grpc::RESOURCE_EXHAUSTED);
+  EXPECT_THAT(refused.error_message(), testing::HasSubstr("--max-requests"));
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(Read(at, &read).ok());
 }
 
 }  // namespace
