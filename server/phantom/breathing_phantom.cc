@@ -123,9 +123,8 @@ Mesh BreathingPhantom::SurfaceOf(const Structure& structure, std::size_t phase) 
 
 Eigen::Vector3d BreathingPhantom::Place(std::size_t voxel) const {
   const std::size_t x = grid_.size.x(), layer = x * grid_.size.y();
-  const Eigen::Vector3d at(static_cast<double>(voxel % x), static_cast<double>(voxel % layer / x),
-                           static_cast<double>(voxel / layer));
-  return kMillimetre * (grid_.to_patient * at);
+  const Eigen::Vector<std::size_t, 3> at(voxel % x, voxel % layer / x, voxel / layer);
+  return kMillimetre * (grid_.to_patient * at.cast<double>());
 }
 
 absl::StatusOr<PhantomPhase> BreathingPhantom::Render(std::size_t phase, const GoOn& go_on) {
