@@ -1,6 +1,7 @@
 // `phrenic watch`: prints a session's values as they change and, with --codec, the size of its frames.
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <optional>
@@ -159,7 +160,8 @@ class SampleWatcher {
       frame.set_tick(sample.tick());
       frame.set_time(sample.time());
       frame.set_breath(sample.breath());
-      for (std::size_t i = 0; i < quantities_.size(); ++i) {
+      const std::size_t known = std::min(quantities_.size(), static_cast<std::size_t>(sample.values_size()));
+      for (std::size_t i = 0; i < known; ++i) {
         v1::MeasureReading& reading = *frame.add_measures();
         reading.set_name(quantities_[i].name());
         reading.set_unit(quantities_[i].unit());
