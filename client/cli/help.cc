@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <set>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -164,7 +165,9 @@ std::string MeaningOf(const CLI::Option& option) {
   if (!option.get_default_str().empty()) notes.push_back(option.get_default_str());
   if (!option.get_envname().empty()) notes.push_back(option.get_envname());
   for (const CLI::Option* other : option.get_needs()) notes.push_back("with " + other->get_name());
-  for (const CLI::Option* other : option.get_excludes()) notes.push_back("not with " + other->get_name());
+  std::set<std::string> excluded;  // in the order of the names: the options' own order is that of their addresses
+  for (const CLI::Option* other : option.get_excludes()) excluded.insert(other->get_name());
+  if (!excluded.empty()) notes.push_back("not with " + absl::StrJoin(excluded, ", "));
   const std::string& text = option.get_description();
   return notes.empty() ? text : absl::StrCat(text, text.empty() ? "(" : " (", absl::StrJoin(notes, "; "), ")");
 }

@@ -93,6 +93,7 @@ CommandFunction SetUpPhantom(CLI::App& command) {
       ->check(NumberIn(0, 10000))
       ->capture_default_str();
   command.add_option("--seed", options->seed, "random seed of noise and holes")->capture_default_str();
+  for (const char* name : {"--labels", "--noise", "--holes", "--seed"}) command.get_option(name)->excludes(scene);
   return Bind(&MakePhantom, options);
 }
 

@@ -248,6 +248,7 @@ class Writer {
                {"spacing_mm", spacing_mm},
                {"labels", labels},
                {"left_out_because_open", phantom_.structures().open},
+               {"moved_with_their_surfaces_without_tissue", phantom_.without_tissue()},
                {"phases", std::move(phases)}};
     if (options_.ct) {
       report_["hounsfield_at_rest"] = hounsfield;

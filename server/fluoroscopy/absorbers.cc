@@ -1,6 +1,7 @@
 #include "server/fluoroscopy/absorbers.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <optional>
 
 #include "server/fluoroscopy/attenuation.h"
@@ -23,15 +24,13 @@ std::optional<Tissue> TissueOfBody(const BodyModel& body) {
 
 class Collector {
  public:
-  Collector(const Model& model, const State& state) : model_(model), state_(state) {
-    for (const BodyModel& body : model.bodies) {
-      if (IsBone(TissueOfBody(body))) outside_ = CoefficientOf(Tissue::kWall);
-    }
+  Collector(const Model& model, const State& state) : model_(model), state_(state), tissues_(TissuesOf(model)) {
+    if (std::any_of(tissues_.begin(), tissues_.end(), IsBone)) outside_ = CoefficientOf(Tissue::kWall);
   }
 
   void Add(int b) {
     const BodyModel& body = model_.bodies[b];
-    const std::optional<Tissue> tissue = TissueOfBody(body);
+    const std::optional<Tissue> tissue = tissues_[static_cast<std::size_t>(b)];
     if (!tissue) return;
     Points placed(3, body.mesh.vertices.cols());
     PlaceBody(model_, state_, b, placed);
@@ -80,6 +79,7 @@ class Collector {
 
   const Model& model_;
   const State& state_;
+  const std::vector<std::optional<Tissue>> tissues_;  // of the model's bodies
   double outside_ = 0;  // coefficient of what is around the bodies [1/m]: the trunk's tissue, or nothing without bones
   Absorbers found_;
   std::vector<Points> bones_;
@@ -87,6 +87,19 @@ class Collector {
 };
 
 }  // namespace
+
+std::vector<std::optional<Tissue>> TissuesOf(const Model& model) {
+  std::vector<std::optional<Tissue>> tissues;
+  bool has_lung = false;  // as a whole
+  for (const BodyModel& body : model.bodies) {
+    tissues.push_back(TissueOfBody(body));
+    has_lung = has_lung || (tissues.back() == Tissue::kLung && !IsLobe(body.name));
+  }
+  for (std::size_t b = 0; has_lung && b < tissues.size(); ++b) {
+    if (IsLobe(model.bodies[b].name)) tissues[b] = std::nullopt;
+  }
+  return tissues;
+}
 
 absl::StatusOr<Absorbers> AbsorbersAt(const Model& model, const State& state) {
   Collector collector(model, state);

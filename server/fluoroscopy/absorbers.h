@@ -2,10 +2,12 @@
 #ifndef PHRENIC_SERVER_FLUOROSCOPY_ABSORBERS_H_
 #define PHRENIC_SERVER_FLUOROSCOPY_ABSORBERS_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "server/fluoroscopy/attenuation.h"
 #include "server/mechanics/model.h"
 
 namespace phrenic::fluoroscopy {
@@ -33,6 +35,10 @@ struct Absorbers {
   Eigen::Vector3d isocentre =
       Eigen::Vector3d::Zero();  // middle of the lungs at rest, or of the bones without lungs [m]
 };
+
+// Returns the tissue of each body of a scene; nullopt for those without a tissue or a surface. Lobes have none beside a
+// lung, which they are drawn in a second time. Thread-safe.
+std::vector<std::optional<Tissue>> TissuesOf(const Model& model);
 
 // Returns what absorbs in a state of the scene. A rib is marrow in a shell of cortical bone of 1.2 mm, with which it
 // has the mean density of ribs, 1.4 g/cm^3. FAILED_PRECONDITION if no body has a tissue that absorbs. Thread-safe.

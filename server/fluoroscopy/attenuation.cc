@@ -97,11 +97,12 @@ double LungCoefficient(double rest_volume, double volume) {
 }
 
 std::optional<Tissue> TissueOf(std::string_view name, std::string_view layer) {
-  // The lobes of the generated lungs are the lungs, drawn in parts.
-  if (layer == "mechanics" || name.starts_with("lobe-")) return std::nullopt;
+  if (layer == "mechanics") return std::nullopt;
   const std::optional<Tissue> tissue = TissueOfName(name);
   return tissue ? tissue : TissueOfName(layer);
 }
+
+bool IsLobe(std::string_view name) { return name.starts_with("lobe-"); }
 
 bool IsBone(std::optional<Tissue> tissue) {
   return tissue == Tissue::kRib || tissue == Tissue::kSternum || tissue == Tissue::kVertebra;

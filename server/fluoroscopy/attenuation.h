@@ -41,6 +41,10 @@ double LungDensity(double rest_volume, double volume);
 // Returns the tissue of a body, from its name and its layer; nullopt for what has none, such as an inner wall.
 std::optional<Tissue> TissueOf(std::string_view name, std::string_view layer);
 
+// True for a lobe, by its name, as the page knows no more: beside a lung it is a part of it, and has no tissue of its
+// own.
+bool IsLobe(std::string_view name);
+
 // True for what the outline of the trunk is drawn around.
 bool IsBone(std::optional<Tissue> tissue);
 

@@ -23,6 +23,7 @@ constexpr double kMostContourVoxels = 3e7;  // voxels
 constexpr double kWidestContours = 3000;    // extent of all contours [mm]
 constexpr double kOffContourPlane = 0.05;   // largest deviation of a contour from its slice [mm]
 constexpr double kMostRowsCrossed = 5e7;    // by all edges
+constexpr double kMostBoxPixels = 2e9;      // of all contours: 300 slices with 100 regions as large as a trunk
 constexpr int kPixelsAround = 2;            // free pixels around contours
 
 // A region of interest.
@@ -151,12 +152,13 @@ absl::StatusOr<StructureSet> ReadSet(DcmDataset& dataset) {
 absl::StatusOr<SliceStack> StackContours(const StructureSet& set) {
   std::vector<Eigen::Vector3d> positions;
   Eigen::AlignedBox2d box;
-  double crossed = 0;
+  double crossed = 0, pixels = 0;
   for (const ContouredRegion& region : set.regions) {
     for (std::size_t c = 0; c < region.contours.size(); ++c) {
       const Eigen::Matrix2Xd& contour = region.contours[c];
       box.extend(Eigen::Vector2d(contour.rowwise().minCoeff())).extend(Eigen::Vector2d(contour.rowwise().maxCoeff()));
       crossed += RowsCrossed(contour / kContourPixel);
+      pixels += BoxPixels(contour / kContourPixel);
       positions.emplace_back(0, 0, region.heights[c]);
     }
   }
@@ -169,6 +171,11 @@ absl::StatusOr<SliceStack> StackContours(const StructureSet& set) {
     return absl::InvalidArgumentError(
         "its contours have too many long edges (ContourData, 3006,0050); simplify them, or export a DICOM "
         "Segmentation");
+  }
+  if (pixels > kMostBoxPixels) {
+    return absl::InvalidArgumentError(
+        "its contours enclose too many pixels together (ContourData, 3006,0050); export the regions of the thorax "
+        "alone, or a DICOM Segmentation");
   }
   const auto stack_with = [&](double pixel) {
     for (Eigen::Vector3d& position : positions) {

@@ -76,15 +76,27 @@ absl::StatusOr<BreathingPhantom> BreathingPhantom::Make(const Model& model, std:
   for (const Structure& structure : phantom.structures_.all) {
     Mesh surface = phantom.SurfaceOf(structure, 0);
     volumes.push_back(SignedVolume(surface.vertices, surface.triangles));
-    const bool is_lung = structure.tissue == Tissue::kLung;
-    std::optional<Interior>& interior = phantom.interiors_.emplace_back();
-    if (request.field || (request.ct && is_lung)) interior.emplace(std::move(surface), is_lung);
+    if (absl::Status status = phantom.AddInterior(structure, std::move(surface)); !status.ok()) return status;
   }
   phantom.smallest_first_.resize(volumes.size());
   std::iota(phantom.smallest_first_.begin(), phantom.smallest_first_.end(), 0);
   std::stable_sort(phantom.smallest_first_.begin(), phantom.smallest_first_.end(),
                    [&](int a, int b) { return volumes[a] < volumes[b]; });
   return phantom;
+}
+
+absl::Status BreathingPhantom::AddInterior(const Structure& structure, Mesh surface) {
+  const bool is_lung = structure.tissue == Tissue::kLung;
+  std::optional<Interior>& interior = interiors_.emplace_back();
+  if (!request_.field && !(request_.ct && is_lung)) return absl::OkStatus();
+  interior.emplace(std::move(surface), is_lung);
+  const absl::Status& tissue = interior->tissue();
+  if (tissue.ok()) return absl::OkStatus();
+  without_tissue_.push_back(structure.name);
+  if (!is_lung) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrFormat("%s: %s; labels need no tissue, a CT and a field do",
+                                                    model_.bodies[static_cast<std::size_t>(structure.body)].name,
+                                                    std::string(tissue.message())));
 }
 
 absl::Status BreathingPhantom::MakeGrid() {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -50,8 +51,9 @@ using GoOn = std::function<absl::Status()>;
 // time is 0. Refers to the model. Not thread-safe. Deterministic.
 class BreathingPhantom {
  public:
-  // INVALID_ARGUMENT without states, or if the volumes would have more than kMostPhantomVoxels, with the smallest
-  // spacing that has fewer; the errors of FindStructures.
+  // INVALID_ARGUMENT without states, if the volumes would have more than kMostPhantomVoxels, with the smallest spacing
+  // that has fewer, or if a lung whose inside is needed has a surface that no tissue can be made in; the errors of
+  // FindStructures.
   static absl::StatusOr<BreathingPhantom> Make(const Model& model, std::vector<State> phases,
                                                const PhantomRequest& request);
 
@@ -59,6 +61,9 @@ class BreathingPhantom {
   const Structures& structures() const { return structures_; }
   // Returns a phase's volumes. The errors of `go_on`.
   absl::StatusOr<PhantomPhase> Render(std::size_t phase, const GoOn& go_on);
+  // Returns the names of compact structures that no elastic tissue can be made in: their insides move with the nearest
+  // point of the surface, as those of thin structures do.
+  const std::vector<std::string>& without_tissue() const { return without_tissue_; }
   // Returns a structure's surface in a phase [m].
   Mesh SurfaceOf(const Structure& structure, std::size_t phase) const;
   // The largest Interior::misfit() of the last phase with a field or a CT [m].
@@ -69,6 +74,7 @@ class BreathingPhantom {
       : model_(model), phases_(std::move(phases)), request_(request) {}
 
   absl::Status MakeGrid();
+  absl::Status AddInterior(const Structure& structure, Mesh surface);
   absl::Status Label(std::size_t phase, const GoOn& go_on, PhantomPhase& rendered) const;
   absl::Status MoveInteriors(std::size_t phase, const GoOn& go_on);
   absl::Status FillField(const GoOn& go_on, PhantomPhase& rendered) const;
@@ -84,6 +90,7 @@ class BreathingPhantom {
   imaging::LabelVolume grid_;                       // of all volumes, without labels
   std::vector<imaging::Label> first_;               // labels of the first phase; empty without fields
   std::vector<std::optional<Interior>> interiors_;  // of each structure; nullopt where neither field nor CT needs it
+  std::vector<std::string> without_tissue_;
   double misfit_ = 0;
 };
 

@@ -25,14 +25,16 @@ std::optional<Eigen::Isometry3d> RigidMotion(const Points& from, const Points& t
   return motion;
 }
 
-// Returns the elastic tissue in a surface; nullopt where it is thin, or not one that tissue can be made in.
-std::optional<LungTissue> TissueIn(const Mesh& surface, bool slides) {
-  const double volume = SignedVolume(surface.vertices, surface.triangles);
+// Returns the elastic tissue in a surface; nullopt where it is thin, or with an error in `made` where tissue cannot be
+// made in it.
+std::optional<LungTissue> TissueIn(const Mesh& surface, bool slides, absl::Status& made) {
+  const double volume = std::abs(SignedVolume(surface.vertices, surface.triangles));
   if (volume < kCompact * VertexAreas(surface.vertices, surface.triangles).sum()) return std::nullopt;
   LungElasticity elasticity;
   if (!slides) elasticity.tangential = elasticity.contact;
   absl::StatusOr<LungTissue> tissue = LungTissue::Make(surface, elasticity);
-  if (!tissue.ok()) return std::nullopt;
+  made = tissue.status();
+  if (!made.ok()) return std::nullopt;
   return *std::move(tissue);
 }
 
@@ -55,7 +57,7 @@ double Percentile95(std::vector<double> values) {
 Interior::Interior(Mesh surface, bool slides)
     : surface_(std::move(surface)),
       slides_(slides),
-      tissue_(TissueIn(surface_, slides)),
+      tissue_(TissueIn(surface_, slides, made_)),
       tree_(surface_.vertices, surface_.triangles),
       rigid_(Eigen::Isometry3d::Identity()) {
   tree_.Fit(surface_.vertices, boxes_);

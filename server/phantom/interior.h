@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 #include <optional>
 
+#include "absl/status/status.h"
 #include "server/mechanics/lungs/lung_tissue.h"
 #include "server/mesh/mesh.h"
 #include "server/mesh/triangle_tree.h"
@@ -19,7 +20,8 @@ namespace phrenic::phantom {
 // Thread-safe but for MoveTo.
 class Interior {
  public:
-  // `surface` [m] is closed; where it moves from. `slides`: as a lung does.
+  // `surface` [m] is closed; where it moves from. `slides`: as a lung does. A compact surface that no elastic tissue
+  // can be made in counts as thin: see tissue().
   Interior(Mesh surface, bool slides);
 
   // Sets where the vertices of the surface are now (3 x n) [m].
@@ -36,6 +38,8 @@ class Interior {
   // Returns the largest distance between the moved boundary of elastic tissue and the moved surface at the 95 % of the
   // boundary where it is least [m]; 0 for other structures.
   double misfit() const { return misfit_; }
+  // Returns why no elastic tissue could be made in a compact surface: the errors of LungTissue::Make; else OK.
+  const absl::Status& tissue() const { return made_; }
   bool is_elastic() const { return tissue_.has_value() && !rigid_; }
 
  private:
@@ -43,6 +47,7 @@ class Interior {
 
   Mesh surface_;
   bool slides_;
+  absl::Status made_;  // of tissue_, which sets it
   std::optional<LungTissue> tissue_;
   TriangleTree tree_;
   TriangleTree::Boxes boxes_;               // of the surface before the motion

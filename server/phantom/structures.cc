@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "absl/strings/str_cat.h"
+#include "server/fluoroscopy/absorbers.h"
 #include "server/fluoroscopy/closing.h"
 
 namespace phrenic::phantom {
@@ -36,11 +37,10 @@ std::string ColorOf(const v1::Scene& scene, const std::string& layer) {
 
 absl::StatusOr<Structures> FindStructures(const Model& model) {
   Structures found;
+  const std::vector<std::optional<fluoroscopy::Tissue>> tissues = fluoroscopy::TissuesOf(model);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const BodyModel& body = model.bodies[b];
-    if (body.mesh.triangles.cols() == 0) continue;
-    const std::optional<fluoroscopy::Tissue> tissue =
-        fluoroscopy::TissueOf(body.name, body.layer.empty() ? body.name : body.layer);
+    const std::optional<fluoroscopy::Tissue> tissue = tissues[static_cast<std::size_t>(b)];
     if (!tissue) continue;
     const std::optional<Triangles> closed = fluoroscopy::ClosedTriangles(body.mesh.vertices, body.mesh.triangles);
     if (!closed) {

@@ -28,6 +28,7 @@ TEST(BreathingPhantom, WritesThePhasesOfABreathAndTheSameAgain) {
   EXPECT_FALSE(std::filesystem::exists(folder + "/field-00.nii.gz"));
   EXPECT_EQ(made.json()["phases"].size(), 2U);
   EXPECT_EQ(made.json()["phases"][0]["time"], 0);
+  EXPECT_TRUE(made.json()["moved_with_their_surfaces_without_tissue"].empty());
   EXPECT_NEAR(made.json()["phases"][1]["time"], 2, 0.01);
   const auto lung = [&](int phase) {
     return made.json()["phases"][phase]["structures"]["lung_right"]["surface_ml"].get<double>();
@@ -43,6 +44,11 @@ TEST(BreathingPhantom, ThatCannotBeIsAnErrorWithTheRemedy) {
   EXPECT_THAT(BreathPhantom(Scratch("b"), {"--preset", "none"}).err, HasSubstr("palsy-right"));
   EXPECT_THAT(BreathPhantom(Scratch("b"), {"--dicom", "pdf"}).err, HasSubstr("seg"));
   EXPECT_NE(BreathPhantom(Scratch("b"), {"--body", "tall"}).code, 0);
+  for (const char* option : {"--labels", "--noise", "--holes", "--seed"}) {  // of a body in one volume
+    const Outcome refused = BreathPhantom(Scratch("b"), {option, option[2] == 'l' ? "totalsegmentator" : "0"});
+    EXPECT_NE(refused.code, 0) << option;
+    EXPECT_THAT(refused.err, HasSubstr(option));
+  }
   EXPECT_NE(Phrenic({"phantom", "--ct", "--out", Scratch("c")}).code, 0);
   const Outcome empty = Phrenic({"phantom", "cube-springs", "--out", Scratch("cube")});
   EXPECT_NE(empty.code, 0);

@@ -18,6 +18,7 @@ namespace phrenic::fluoroscopy {
 namespace {
 
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::Field;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -62,6 +63,7 @@ TEST_F(Thorax, HasEveryClosedBodyWithTissueAndATrunkAroundIt) {
   EXPECT_THAT(found.open, IsEmpty());
   EXPECT_THAT(found.all, Contains(Field(&Absorber::name, "lung-left")));
   EXPECT_THAT(found.all, Not(Contains(Field(&Absorber::name, "chest-wall"))));
+  EXPECT_THAT(found.all, Not(Contains(Field(&Absorber::name, StartsWith("lobe-")))));
   const Absorber& trunk = found.all.back();
   EXPECT_EQ(trunk.name, "trunk");
   Mesh mesh;
@@ -127,6 +129,26 @@ TEST(Absorbers, OfASceneWithoutTissueAreAnError) {
   EXPECT_FALSE(AbsorbersAt(*model, model->InitialState()).ok());
 }
 
+// Lobes beside a lung would count twice; without one they are the lungs.
+TEST(Absorbers, OfLobesAreLungsOnlyInAbsenceOfALung) {
+  const auto lungs_of = [](const std::vector<std::string>& names) {
+    std::string text = kTriangle;
+    for (const std::string& name : names) {
+      text += "bodies { name: '" + name + R"(' role: ROLE_AT_REST polyhedron {
+        vertices {} vertices { x: 0.1 } vertices { y: 0.1 } vertices { z: 0.1 }
+        triangles { a: 0 b: 2 c: 1 } triangles { a: 0 b: 1 c: 3 }
+        triangles { a: 0 b: 3 c: 2 } triangles { a: 1 b: 2 c: 3 } } })";
+    }
+    std::vector<std::string> found;
+    const auto model = CompileText(text);
+    if (model == nullptr) return found;
+    for (const LungNow& lung : AbsorbersAt(*model, model->InitialState())->lungs) found.push_back(lung.name);
+    return found;
+  };
+  EXPECT_THAT(lungs_of({"lobe-upper-left", "lung-left"}), ElementsAre("lung-left"));
+  EXPECT_THAT(lungs_of({"lobe-upper-left", "lobe-lower-left"}), ElementsAre("lobe-upper-left", "lobe-lower-left"));
+}
+
 TEST(LungCoefficient, FallsWithVolumeToThatOfAir) {
   EXPECT_GT(LungCoefficient(1, 1), LungCoefficient(1, 2));
   EXPECT_NEAR(LungCoefficient(1, 1), 5.8, 0.1) << "0.3 g/cm3";
@@ -153,8 +175,8 @@ TEST(TissueOf, IsToldByNameBeforeLayer) {
   EXPECT_EQ(TissueOf("cartilage-3-left", "cartilages"), Tissue::kCartilage);
   EXPECT_EQ(TissueOf("superior-vena-cava", "caval-veins"), Tissue::kBlood);
   EXPECT_EQ(TissueOf("kidney-left", "kidneys"), Tissue::kOrgan);
-  // The lungs drawn in parts would count twice; the shoulder girdle is outside of the trunk's outline.
-  EXPECT_EQ(TissueOf("lobe-upper-left", "upper-lobes"), std::nullopt);
+  EXPECT_EQ(TissueOf("lobe-upper-left", "upper-lobes"), Tissue::kLung);
+  // The shoulder girdle is outside of the trunk's outline.
   EXPECT_EQ(TissueOf("fissure-oblique-left", "fissures"), std::nullopt);
   EXPECT_EQ(TissueOf("clavicle-left", "clavicles"), std::nullopt);
   EXPECT_EQ(TissueOf("scapula-left", "scapulae"), std::nullopt);

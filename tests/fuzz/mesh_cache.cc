@@ -13,7 +13,8 @@ namespace {
 
 void CheckPacked(const std::string& bytes) {
   const auto mesh = phrenic::session::UnpackMesh(bytes);
-  if (mesh.has_value() && !phrenic::Validate(*mesh).ok()) std::abort();
+  if (!mesh.has_value()) return;
+  if (!phrenic::Validate(*mesh).ok() || phrenic::session::PackMesh(*mesh) != bytes) std::abort();
 }
 
 }  // namespace

@@ -120,6 +120,7 @@ TEST(RtStructures, ThatAreWrongAreRefusedWithContourAttributeAndRemedy) {
   EXPECT_THAT(with({{0, 0, 3, 9, 0, 3, 9, 9}}), HasSubstr("contour 4"));
   EXPECT_THAT(with(Rectangle(0, 30, 0, 30, 10.3)), HasSubstr("not equidistant"));
   EXPECT_THAT(with(Rectangle(0, 9000, 0, 30, 3)), HasSubstr("smaller than 3000 mm"));
+  EXPECT_THAT(RefusalOf({{1, "BODY", Box(0, 2990, 0, 2990, 1650)}}), HasSubstr("enclose too many pixels"));
   EXPECT_THAT(RefusalOf({}), AllOf(HasSubstr("RT Structure Set"), HasSubstr("3006,0039"), HasSubstr("; ")));
   EXPECT_THAT(RefusalOf({{1, "iso", {{{5, 5, 3}, "POINT"}}}}), HasSubstr("3006,0039"));
 }
@@ -197,6 +198,8 @@ TEST(ContourFill, HasTheAreaOfAPolygonAndIsOddEven) {
   double area = 0;
   for (const PixelRun& run : FillContours({&triangle}, {60, 60})) area += run.last - run.first + 1;
   EXPECT_NEAR(area, 1000, 20);
+  EXPECT_LE(area, BoxPixels(triangle));
+  EXPECT_EQ(BoxPixels(triangle), 51 * 41);
   EXPECT_TRUE(FillContours({&triangle, &triangle}, {60, 60}).empty());
 }
 

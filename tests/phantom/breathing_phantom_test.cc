@@ -6,17 +6,24 @@
 
 #include <cmath>
 #include <map>
+#include <memory>
+#include <string>
 
 #include "absl/strings/match.h"
 #include "server/imaging/voxelise.h"
 #include "server/mesh/normals.h"
 #include "server/phantom/hounsfield.h"
+#include "tests/compile_text.h"
 #include "tests/phantom/small_breath.h"
+#include "tests/small_scenes.h"
 
 namespace phrenic::phantom {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 class Phantom : public SmallBreath {
  protected:
@@ -214,6 +221,35 @@ TEST(Hounsfield, OfTissuesIsThatOfTextbooks) {
   for (double ratio = 0.4; ratio < 4; ratio += 0.1) {
     EXPECT_NEAR(DensityOf(LungHounsfield(ratio)) * ratio, 0.3, 0.004) << "mass at " << ratio;
   }
+}
+
+// Returns the phantom of one body, a tetrahedron that faces outwards or inwards.
+absl::StatusOr<BreathingPhantom> PhantomOfTetrahedron(const std::string& name, bool outwards, bool ct, bool field,
+                                                      std::shared_ptr<const Model>& model) {
+  const std::string triangles = outwards ? R"(triangles { a: 0 b: 2 c: 1 } triangles { a: 0 b: 1 c: 3 }
+                                              triangles { a: 0 b: 3 c: 2 } triangles { a: 1 b: 2 c: 3 })"
+                                         : R"(triangles { a: 0 b: 1 c: 2 } triangles { a: 0 b: 3 c: 1 }
+                                              triangles { a: 0 b: 2 c: 3 } triangles { a: 1 b: 3 c: 2 })";
+  model = CompileText(Triangle("bodies { name: '" + name + R"(' role: ROLE_AT_REST polyhedron {
+    vertices {} vertices { x: 0.2 } vertices { y: 0.2 } vertices { z: 0.2 })" +
+                               triangles + "} }"));
+  if (model == nullptr) return absl::InternalError("the scene has an error");
+  return BreathingPhantom::Make(*model, {model->InitialState()}, {8, ct, field});
+}
+
+TEST(PhantomWithoutTissue, IsRefusedForALungAndListedForAnOrgan) {
+  std::shared_ptr<const Model> model;
+  const auto inwards = PhantomOfTetrahedron("lung-left", false, true, false, model);
+  EXPECT_TRUE(absl::IsInvalidArgument(inwards.status()));
+  EXPECT_THAT(std::string(inwards.status().message()), AllOf(HasSubstr("lung-left"), HasSubstr("outwards")));
+  EXPECT_TRUE(PhantomOfTetrahedron("lung-left", false, false, false, model).ok()) << "labels need no tissue";
+  EXPECT_TRUE(PhantomOfTetrahedron("lung-left", true, true, true, model).ok());
+  const auto organ = PhantomOfTetrahedron("liver", false, true, true, model);
+  ASSERT_TRUE(organ.ok()) << organ.status();
+  EXPECT_THAT(organ->without_tissue(), ElementsAre("liver"));
+  const auto whole = PhantomOfTetrahedron("liver", true, true, true, model);
+  ASSERT_TRUE(whole.ok()) << whole.status();
+  EXPECT_THAT(whole->without_tissue(), IsEmpty());
 }
 
 }  // namespace

@@ -10,7 +10,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "server/imaging/dicom_file.h"
@@ -131,6 +133,40 @@ TEST_F(DicomPhantom, ModelsHoldTheirFiles) {
   ASSERT_EQ(stated, liver.size());
   ASSERT_GE(length, liver.size());
   EXPECT_EQ(std::string(reinterpret_cast<const char*>(document), stated), liver);
+}
+
+TEST_F(DicomPhantom, HasACodeOfItsOwnForEachStructure) {
+  const std::string tissue = CodeOf(v1::Anatomy()).value;
+  for (const Structure& structure : All()) EXPECT_NE(CodeOf(structure.anatomy).value, tissue) << structure.name;
+  std::map<std::string, int> kinds;  // that share a code
+  for (int kind = 1; kind < v1::Structure_ARRAYSIZE; ++kind) {
+    if (!v1::Structure_IsValid(kind) || kind == v1::STRUCTURE_INNER_CAGE) continue;
+    v1::Anatomy anatomy;
+    anatomy.set_structure(static_cast<v1::Structure>(kind));
+    EXPECT_NE(CodeOf(anatomy).value, tissue) << v1::Structure_Name(anatomy.structure());
+    EXPECT_EQ(++kinds[CodeOf(anatomy).value], 1) << v1::Structure_Name(anatomy.structure());
+  }
+}
+
+TEST(DicomStudy, CutsTextsBetweenCharactersAndRoundsTimesToMilliseconds) {
+  const auto common = [](const std::string& description, double time) {
+    DicomStudy study = kStudy;
+    study.description = description;
+    DcmDataset data;
+    PutCommon(study, {"seg", "SEG", 1, "a", time}, UID_SegmentationStorage, "1.2.3", data);
+    OFString text, at;
+    EXPECT_TRUE(data.findAndGetOFString(DCM_StudyDescription, text).good());
+    EXPECT_TRUE(data.findAndGetOFString(DCM_ContentTime, at).good());
+    return std::pair(std::string(text.c_str()), std::string(at.c_str()));
+  };
+  const std::string a63(63, 'a');
+  EXPECT_EQ(common(a63 + "\u00e4b", 0).first, a63);  // two bytes
+  EXPECT_EQ(common(a63.substr(1) + "\u00e4b", 0).first, a63.substr(1) + "\u00e4");
+  EXPECT_EQ(common(a63.substr(2) + "\u20acb", 0).first, a63.substr(2) + "\u20ac");  // three bytes
+  EXPECT_EQ(common(a63 + "bc", 0).first, a63 + "b");
+  EXPECT_EQ(common("a", 59.9999999).second, "000100.000");
+  EXPECT_EQ(common("a", 59.9994).second, "000059.999");
+  EXPECT_EQ(common("a", 3723.5).second, "010203.500");
 }
 
 TEST_F(DicomPhantom, IsValidByDciodvfy) {

@@ -1,9 +1,11 @@
 // How the inside of a ball moves when its surface moves in ways whose inside is known.
 #include "server/phantom/interior.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "server/mesh/topology.h"
@@ -98,6 +100,19 @@ TEST(Interior, OfWhatIsThinMovesWithTheNearestSurface) {
   const Eigen::Vector3d place(0.02, 0.01, 0.0005);
   EXPECT_NEAR(interior.DisplacementAt(place).z(), 0.01, 1e-4);
   EXPECT_LT((interior.OriginOf(place + interior.DisplacementAt(place)) - place).norm(), 1e-5);
+}
+
+// A surface that faces inwards encloses a compact place in which no tissue can be made: it is no thin one.
+TEST(Interior, SaysWhyACompactSurfaceHasNoTissue) {
+  Mesh ball = Ball(0.06), plate = Ball(0.06);
+  plate.vertices.row(2) *= 0.03;
+  EXPECT_TRUE(Interior(ball, true).tissue().ok());
+  EXPECT_TRUE(Interior(plate, true).tissue().ok());
+  ball.triangles.row(0).swap(ball.triangles.row(1));
+  Interior interior(ball, true);
+  EXPECT_THAT(std::string(interior.tissue().message()), testing::HasSubstr("must face outwards"));
+  interior.MoveTo(1.2 * ball.vertices);
+  EXPECT_FALSE(interior.is_elastic());
 }
 
 }  // namespace

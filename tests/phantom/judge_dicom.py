@@ -24,6 +24,7 @@ def check_code(item):
     known = {value for names in concepts["SCT"].values() for value in names}
     code = item.SegmentedPropertyTypeCodeSequence[0]
     assert code.CodingSchemeDesignator == "SCT", item.SegmentLabel
+    assert code.CodeMeaning != "Tissue", f"{item.SegmentLabel} has no code of its own"
     if code.CodeValue not in known:
         return False
     meaning = code.CodeMeaning.lower().replace(" ", "")

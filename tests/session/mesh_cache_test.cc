@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "server/anatomy/anatomy.h"
+#include "server/crypto/sha256.h"
 #include "server/schema/file_bytes.h"
 
 namespace phrenic::session {
@@ -73,6 +74,25 @@ TEST_F(KeptMeshes, HaveTheBitsOfAGeneratedPart) {
   EXPECT_EQ(same->vertices, mesh.vertices);
   EXPECT_EQ(same->triangles, mesh.triangles);
   EXPECT_EQ(same->regions, mesh.regions);
+}
+
+// What is read is what was written: regions in another order, or one twice, are not.
+TEST_F(KeptMeshes, WithRegionsInAnotherOrderAreNotRead) {
+  Mesh mesh = SmallMesh(3);
+  mesh.regions = {{"a", {0, 1}}};
+  const std::string one = PackMesh(mesh);
+  mesh.regions = {{"b", {0, 1}}};
+  const std::string other = PackMesh(mesh);
+  mesh.regions = {};
+  const std::size_t hash = Sha256Hex("").size(), region = one.size() - PackMesh(mesh).size();
+  const auto with = [&](const std::string& last) {
+    const std::string content = one.substr(hash) + last.substr(last.size() - region);
+    return UnpackMesh(Sha256Hex(content) + content);
+  };
+  EXPECT_TRUE(with(other).has_value());
+  EXPECT_FALSE(with(one).has_value());
+  std::string reversed = other.substr(hash) + one.substr(one.size() - region);
+  EXPECT_FALSE(UnpackMesh(Sha256Hex(reversed) + reversed).has_value());
 }
 
 TEST_F(KeptMeshes, AreGeneratedAgainIfTheirFileIsDamaged) {

@@ -19,8 +19,12 @@ struct PixelRun {
 // of rows.
 std::vector<PixelRun> FillContours(const std::vector<const Contour*>& contours, const Eigen::Vector2i& size);
 
-// Returns how many rows the edges of a polygon cross together, to which the cost of filling is proportional.
+// The cost of filling is that of both together.
+//
+// Returns how many rows the edges of a polygon cross together, with one more for each edge.
 double RowsCrossed(const Contour& contour);
+// Returns how many pixels the box around a polygon has: runs of polygons have at most the sum of theirs.
+double BoxPixels(const Contour& contour);
 
 }  // namespace phrenic::imaging
 

@@ -16,6 +16,9 @@ const Code kVertebrae[] = {{"64864005", "T1 vertebra"}, {"53733008", "T2 vertebr
                            {"66794005", "L1 vertebra"}, {"14293000", "L2 vertebra"},  {"36470004", "L3 vertebra"},
                            {"11994002", "L4 vertebra"}, {"49668003", "L5 vertebra"}};
 
+const Code kLobes[] = {
+    {"45653009", "Upper lobe of lung"}, {"72481006", "Middle lobe of right lung"}, {"90572001", "Lower lobe of lung"}};
+
 // Returns the code of a number from 1, else that of all of the kind.
 template <std::size_t count>
 Code Numbered(const Code (&codes)[count], int number, const Code& all) {
@@ -60,9 +63,23 @@ Code CodeOf(const v1::Anatomy& anatomy) {
       return {"69695003", "Stomach"};
     case v1::STRUCTURE_SPLEEN:
       return {"78961009", "Spleen"};
-    default:
-      return {"85756007", "Tissue"};
+    case v1::STRUCTURE_CLAVICLE:
+      return {"51299004", "Clavicle"};
+    case v1::STRUCTURE_SCAPULA:
+      return {"79601000", "Scapula"};
+    case v1::STRUCTURE_KIDNEY:
+      return {"64033007", "Kidney"};
+    case v1::STRUCTURE_LUNG_LOBE:
+      return Numbered(kLobes, anatomy.number(), {"31094006", "Lobe of lung"});
+    case v1::STRUCTURE_FISSURE:
+      return {"278983006", "Fissure of lung"};
+    case v1::STRUCTURE_INNER_CAGE:  // a surface of the mechanics
+    case v1::STRUCTURE_UNSPECIFIED:
+    case v1::Structure_INT_MIN_SENTINEL_DO_NOT_USE_:
+    case v1::Structure_INT_MAX_SENTINEL_DO_NOT_USE_:
+      break;
   }
+  return {"85756007", "Tissue"};
 }
 
 Code CodeOf(v1::Side side) {

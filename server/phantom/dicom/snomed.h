@@ -13,7 +13,7 @@ struct Code {
   std::string value, meaning;
 };
 
-// Returns the code of a structure; "Tissue" for one without an anatomy.
+// Returns the code of a structure; "Tissue" for one without an anatomy, and for the inner face of the cage.
 Code CodeOf(const v1::Anatomy& anatomy);
 // Returns the code of a side; empty for a structure in the middle.
 Code CodeOf(v1::Side side);

@@ -3,6 +3,7 @@
 #include <dcmtk/dcmdata/dcostrmb.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "absl/numeric/int128.h"
 #include "absl/strings/numbers.h"
@@ -14,17 +15,23 @@ namespace phrenic::phantom {
 namespace {
 
 constexpr const char* kDay = "19700101";
-constexpr std::size_t kLongestText = 64;  // of VR LO
+constexpr std::size_t kLongestText = 64;  // of VR LO [bytes]: not longer for readers that count bytes
 
+// Returns the characters of a UTF-8 text that have room in an attribute.
 std::string Shortened(std::string text) {
-  text.resize(std::min(text.size(), kLongestText));
+  std::size_t end = std::min(text.size(), kLongestText);
+  const auto continues = [&](std::size_t at) { return (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80; };
+  while (end > 0 && end < text.size() && continues(end)) --end;
+  text.resize(end);
   std::replace(text.begin(), text.end(), '\\', '/');
   return text;
 }
 
+// Returns a time after midnight as VR TM has it.
 std::string TimeOf(double seconds) {
-  return absl::StrFormat("%02d%02d%06.3f", 0, static_cast<int>(seconds / 60) % 60,
-                         seconds - 60 * static_cast<int>(seconds / 60));
+  const long long milliseconds = std::llround(1e3 * seconds), minutes = milliseconds / 60000;
+  return absl::StrFormat("%02d%02d%02d.%03d", minutes / 60 % 24, minutes % 60, milliseconds / 1000 % 60,
+                         milliseconds % 1000);
 }
 
 std::string Decimal(absl::uint128 number) {

@@ -19,7 +19,7 @@ namespace phrenic::phantom {
 // neither name nor number; dates that DICOM requires are 1970-01-01.
 struct DicomStudy {
   std::string key;          // what the phantom was made of: scene, parameters, spacing
-  std::string description;  // of the study, up to 64 characters
+  std::string description;  // of the study; what exceeds 64 bytes of UTF-8 is cut off
   std::string software;     // version of Phrenic
 
   // Returns the identifier of something in the study.

@@ -142,8 +142,10 @@ std::optional<Mesh> UnpackMesh(std::string_view bytes) {
   mesh.tetrahedra = in.Columns<Tetrahedra>();
   mesh.edges = in.Columns<Edges>();
   while (in.good() && !in.whole()) {
-    const std::vector<char> name = in.Array<char>();
-    mesh.regions[std::string(name.begin(), name.end())] = in.Array<int>();
+    const std::vector<char> characters = in.Array<char>();
+    const std::string name(characters.begin(), characters.end());
+    if (!mesh.regions.empty() && name <= mesh.regions.rbegin()->first) return std::nullopt;  // not as PackMesh writes
+    mesh.regions[name] = in.Array<int>();
   }
   if (!in.whole() || !Validate(mesh).ok()) return std::nullopt;
   return mesh;

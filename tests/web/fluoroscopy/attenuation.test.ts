@@ -72,11 +72,18 @@ test("ASmallGapIsClosedAndAnOpenSurfaceIsLeftOutAndNamed", () => {
   expect(half.all).toEqual([]);
 });
 
+test("LobesAreLungsOnlyInAbsenceOfALung", () => {
+  const lungsOf = (...names: string[]) =>
+    new Absorbers(names.map((name) => body(name, 0.08, Placement.STREAMED))).lungs.map(({ name }) => name);
+  expect(lungsOf("lobe-upper-left", "lung-left")).toEqual(["lung-left"]);
+  expect(lungsOf("lobe-upper-left", "lobe-lower-left")).toEqual(["lobe-upper-left", "lobe-lower-left"]);
+});
+
 test("BodiesAbsorbByTheirNames", () => {
   const of = (name: string, layer: string) => absorptionOf({ name, layer });
   expect(of("kidney-left", "kidneys")).toBe("organ");
-  // The lungs drawn in parts would count twice; the shoulder girdle is outside of the trunk's outline.
-  expect(of("lobe-upper-left", "upper-lobes")).toBeUndefined();
+  expect(of("lobe-upper-left", "upper-lobes")).toBe("lung");
+  // The shoulder girdle is outside of the trunk's outline.
   expect(of("fissure-oblique-left", "fissures")).toBeUndefined();
   expect(of("clavicle-left", "clavicles")).toBeUndefined();
   expect(of("scapula-left", "scapulae")).toBeUndefined();

@@ -2,7 +2,7 @@ import { Placement } from "../gen/phrenic/v1/frames_pb";
 import { type Body, floatsPerPose, type FrameArrays, positionsOf } from "../geometry/bodies";
 import { enclosedVolume } from "../geometry/measuring";
 import { computeNormals } from "../geometry/normals";
-import { absorptionOf, isBone, lungCoefficient, lungDensity, materials } from "./attenuation";
+import { absorptionOf, isBone, lungCoefficient, lungDensity, materials, withoutLobesOfLungs } from "./attenuation";
 import { closedTriangles } from "./closing";
 import { trunkOutline } from "./outline";
 
@@ -46,7 +46,8 @@ export class Absorbers {
   private readonly outline: Absorber;
   private readonly heights: [low: number, high: number];
 
-  constructor(bodies: Body[]) {
+  constructor(all: Body[]) {
+    const bodies = withoutLobesOfLungs(all);
     this.bones = bodies.filter((body) => body.triangles.length > 0 && isBone(absorptionOf(body)));
     const outside = (this.outside = this.bones.length > 0 ? materials.wall.coefficient : 0);
     this.outline = {

@@ -85,9 +85,16 @@ const patterns: [RegExp, Absorption][] = [
 
 /** Returns how a body absorbs, from its name and its layer; undefined for what has no tissue, such as an inner wall. */
 export function absorptionOf({ name, layer }: Pick<Body, "name" | "layer">): Absorption | undefined {
-  // The lobes of the generated lungs are the lungs, drawn in parts.
-  if (layer === "mechanics" || name.startsWith("lobe-")) return undefined;
+  if (layer === "mechanics") return undefined;
   return (patterns.find(([pattern]) => pattern.test(name)) ?? patterns.find(([pattern]) => pattern.test(layer)))?.[1];
+}
+
+const isLobe = ({ name }: Pick<Body, "name">) => name.startsWith("lobe-");
+
+/** Returns the bodies that count: lobes are left out beside a lung, which they are drawn in a second time. */
+export function withoutLobesOfLungs<B extends Pick<Body, "name" | "layer" | "triangles">>(bodies: B[]): B[] {
+  const isLung = (body: B) => body.triangles.length > 0 && !isLobe(body) && absorptionOf(body) === "lung";
+  return bodies.some(isLung) ? bodies.filter((body) => !isLobe(body)) : bodies;
 }
 
 /** True for what the outline of the trunk is drawn around. */
