@@ -15,7 +15,6 @@ import type { OnPredicted } from "./prediction_pad";
 import { questionForm } from "./question_form";
 import type { KeepView } from "./step_form";
 import { StepPictures } from "./step_pictures";
-import { openWorksheet } from "./worksheet_page";
 import { t } from "../../language/translate";
 
 /** What a lesson does to the page, and where it comes from. */
@@ -107,6 +106,7 @@ export class LessonCard {
     const { lesson, actions } = this;
     if (lesson === undefined) return;
     await this.keepPicture();
+    const { openWorksheet } = await import("./worksheet_page");
     const parts = { pictures: this.pictures.byStep, predicts: actions.predicts() };
     const closed = () => this.element.querySelector<HTMLElement>("#lesson-print")?.focus();
     openWorksheet(lesson, parts, { teaches: actions.teaches.value, print: () => actions.print(), closed });
