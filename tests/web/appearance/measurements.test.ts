@@ -143,3 +143,20 @@ test("AStepsMeasurementsReplaceThoseOfTheStepBeforeAndNotTheUsers", () => {
   measurements.replaceKept([{ tool: "body", points: [{ body: "unknown", rest: [0, 0, 0] }] }]);
   expect(measurements.all.value.map(({ name }) => name)).toEqual(["own"]);
 });
+
+test("AStepWithTwelveMeasurementsLeavesTheUsers", () => {
+  const kept = Array.from({ length: 12 }, () => ({
+    tool: "body" as const,
+    points: [{ body: "tetrahedron", rest: [0, 0, 0] as const }],
+  }));
+  const measurements = measuring();
+  const own = (name: string) => measurements.measureSurface({ name, body: "tetrahedron", vertices: undefined });
+  const names = () => measurements.all.value.map(({ name }) => name).filter((name) => name.startsWith("own"));
+  own("own 0");
+  measurements.replaceKept(kept);
+  expect([measurements.all.value.length, names()]).toEqual([12, ["own 0"]]);
+  for (let i = 1; i < 12; i++) own(`own ${i}`);
+  expect([measurements.all.value.length, names().length]).toEqual([12, 12]);
+  measurements.replaceKept(kept);
+  expect(names().length).toBe(12);
+});

@@ -8,7 +8,8 @@ import { FakeServer } from "../fakes/fake_server";
 let server: FakeServer;
 let clock: FakeClock;
 let numbers: Frame[];
-let missing: number;
+let gaps: number;
+let refusals: string[];
 let feed: SampleFeed;
 
 const quantities = [
@@ -19,8 +20,12 @@ const sample = (time: number) => ({ tick: BigInt(1000 * time), time, breath: 0.5
 const times = () => numbers.map(({ time }) => time);
 
 beforeEach(() => {
-  [server, clock, numbers, missing] = [new FakeServer(), new FakeClock(), [], 0];
-  const listener = { sample: (each: Frame) => numbers.push(each), leftOut: (count: number) => (missing += count) };
+  [server, clock, numbers, gaps, refusals] = [new FakeServer(), new FakeClock(), [], 0, []];
+  const listener = {
+    sample: (each: Frame) => numbers.push(each),
+    gap: () => gaps++,
+    refused: (reason: string) => refusals.push(reason),
+  };
   feed = new SampleFeed(server.api, "thorax", listener, clock);
 });
 
@@ -66,7 +71,7 @@ test("AnErrorIsFollowedByAnotherTryFromTheSamePosition", async () => {
   server.sampleBatches = [{ samples: [sample(0.04)], leftOut: 3n, track: 7n, last: 5n }];
   await clock.advance(5000);
   expect(times()).toEqual([0.02, 0.04]);
-  expect(missing).toBe(3);
+  expect(gaps).toBe(1);
   expect(server.sampleReads.at(-1)).toMatchObject({ track: 7n, last: 1n });
 });
 
@@ -79,4 +84,42 @@ test("CatchingUpEndsWhenTheSamplesUpToNowWereReceived", async () => {
   expect(times()).toEqual([0.02, 0.04]);
   server.down = true;
   await feed.catchUp(); // a lost connection is no error here
+});
+
+test("AChangeOfTheSessionDoesNotShortenThePauseAfterAnError", async () => {
+  void feed.run();
+  await settle();
+  server.refusal = "there are too many readers";
+  await clock.advance(1000);
+  const reads = server.sampleReads.length;
+  for (let second = 1; second < 5; second++) {
+    feed.wake();
+    await clock.advance(1000);
+  }
+  expect(server.sampleReads.length).toBe(reads);
+  await clock.advance(1000);
+  expect(server.sampleReads.length).toBe(reads + 1);
+});
+
+test("ARefusalIsToldUntilARead", async () => {
+  server.refusal = "there are too many readers";
+  void feed.run();
+  await settle();
+  expect(refusals).toEqual(["there are too many readers"]);
+  server.refusal = "";
+  await clock.advance(5000);
+  expect(refusals.at(-1)).toBe("");
+});
+
+test("SamplesOfAnotherTrackComeAfterAGap", async () => {
+  server.sampleBatches = [
+    { quantities, samples: [sample(0.02)], track: 7n, last: 1n },
+    { samples: [sample(0.04)], track: 7n, last: 2n },
+  ];
+  void feed.run();
+  await settle();
+  expect(gaps).toBe(0);
+  server.sampleBatches = [{ quantities, present: sample(100), track: 8n, last: 0n }];
+  await clock.advance(200);
+  expect([times().at(-1), gaps]).toEqual([100, 1]);
 });

@@ -1,7 +1,7 @@
 import { create } from "@bufbuild/protobuf";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { describe, expect, test } from "vitest";
+import { describe, expect, test, vi } from "vitest";
 import { FrameDecoder } from "../../../web/src/decoders/frame_decoder";
 import {
   Codec,
@@ -139,4 +139,23 @@ test("AnUnknownBodyIsRefused", () => {
   expect(() => new FrameDecoder(decoderModule(), []).decode(create(FrameSchema, { bodies: [3] }))).toThrow(
     "bodies: an index is out of range, there are 0 bodies",
   );
+});
+
+test("OnlyTheDecodersOfTheLastThreeSetsOfBodiesAreKept", () => {
+  const bodies = [0, 3, 6, 9].map((firstVertex) =>
+    decodeBody(triangleBody({ placement: Placement.STREAMED, firstVertex })),
+  );
+  const decoder = new FrameDecoder(decoderModule(), bodies);
+  const { Instance } = WebAssembly;
+  const made = vi.spyOn(WebAssembly, "Instance").mockImplementation(function (module) {
+    return new Instance(module);
+  });
+  const madeFor = (body: number) => {
+    const before = made.mock.calls.length;
+    decoder.decode(create(FrameSchema, { codec: Codec.RAW, positions: new Uint8Array(36), bodies: [body] }));
+    return made.mock.calls.length - before;
+  };
+  expect([0, 1, 2, 0, 3].map(madeFor)).toEqual([1, 1, 1, 0, 1]);
+  expect([0, 2, 3, 1].map(madeFor)).toEqual([0, 0, 0, 1]);
+  made.mockRestore();
 });

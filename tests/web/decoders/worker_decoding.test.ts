@@ -14,7 +14,7 @@ class Thread implements DecodingThread {
   onmessage: DecodingThread["onmessage"] = null;
   onerror: DecodingThread["onerror"] = null;
   readonly requests: DecodingRequest[] = [];
-  private readonly answer = answerWith(Promise.resolve(decoderModule()));
+  private readonly answer = answerWith(() => Promise.resolve(decoderModule()));
 
   postMessage(message: DecodingRequest, transfer: Transferable[]): void {
     this.requests.push(structuredClone(message, { transfer: transfer as ArrayBuffer[] }));
@@ -104,4 +104,29 @@ test("WhatNeedsTooMuchMemoryIsAnError", () => {
   expect([...decompress(decoderModule(), frame)]).toEqual([0, 0, 0, 0, 0]);
   const huge = Uint8Array.from([0x28, 0xb5, 0x2f, 0xfd, 0xa0, 0xff, 0xff, 0xff, 0x7f, 1, 0, 0]);
   expect(() => decompress(decoderModule(), huge)).toThrow(RangeError);
+});
+
+test("ADecoderThatCouldNotBeLoadedIsLoadedForTheNextFrame", async () => {
+  let loads = 0;
+  const answer = answerWith(() =>
+    loads++ === 0 ? Promise.reject(new Error("HTTP 503")) : Promise.resolve(decoderModule()),
+  );
+  await answer({ bodies: [body] });
+  expect(await answer({ number: 1, frame: frameAt(5) })).toMatchObject({ number: 1, positions: { 0: 5 } });
+  await answer({ number: 2, frame: frameAt(5) });
+  expect(loads).toBe(2);
+});
+
+test("ABasisThatCameBeforeTheDecoderIsNotLost", async () => {
+  const reasons = [new Error("HTTP 503"), new Error("HTTP 503")];
+  const answer = answerWith(() => {
+    const reason = reasons.pop();
+    return reason === undefined ? Promise.resolve(decoderModule()) : Promise.reject(reason);
+  });
+  await answer({ bodies: [body] });
+  await answer({ basis: { epoch: 4n, shapes: [] } });
+  const frame = create(FrameSchema, { codec: Codec.BASIS, bodies: [0], basisEpoch: 4n });
+  expect(await answer({ number: 1, frame })).not.toMatchObject({
+    problem: expect.stringContaining("has not been received") as unknown,
+  });
 });

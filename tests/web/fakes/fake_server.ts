@@ -70,6 +70,10 @@ export class FakeServer {
   sessions = [this.session];
   sceneHash = "abc";
   down = false;
+  /** Why playing, pausing and reading samples or references are refused; empty if they are not. */
+  refusal = "";
+  /** Number of calls for references. */
+  referenceReads = 0;
   geometryCalls = 0;
   /** Sequence numbers of acknowledged frames. */
   readonly acknowledged: bigint[] = [];
@@ -149,11 +153,11 @@ export class FakeServer {
         },
         playSession: ({ sessionId, inStepWith }) => {
           this.played.push([sessionId, inStepWith]);
-          return this.answer({ session: this.session });
+          return this.answerUnlessRefused({ session: this.session });
         },
         pauseSession: ({ sessionId }) => {
           this.paused.push(sessionId);
-          return this.answer({ session: this.pausedSessions.get(sessionId) ?? this.session });
+          return this.answerUnlessRefused({ session: this.pausedSessions.get(sessionId) ?? this.session });
         },
         updateParameters: ({ parameters, preset }) => {
           this.updates.push(preset === "" ? parameters! : { preset });
@@ -173,12 +177,17 @@ export class FakeServer {
       service(CompareService, this.comparing());
       service(StudyService, this.studying());
       service(TissueService, this.tissueReader());
-      service(ReferenceService, { getReferences: () => this.answer({ ranges: [], curves: [] }) });
+      service(ReferenceService, {
+        getReferences: () => {
+          this.referenceReads++;
+          return this.answerUnlessRefused({ ranges: [], curves: [] });
+        },
+      });
       service(SampleService, {
         readSamples: (request) => {
           this.sampleReads.push(request);
           const batch = this.sampleBatches.shift() ?? { track: request.track, last: request.last };
-          return this.answer({ batch, more: this.sampleBatches.length > 0 });
+          return this.answerUnlessRefused({ batch, more: this.sampleBatches.length > 0 });
         },
       });
     }),
@@ -297,6 +306,11 @@ export class FakeServer {
       this.emitters.add(emit);
       signal.addEventListener("abort", () => emit("end"));
     });
+  }
+
+  private answerUnlessRefused<T>(value: T): T {
+    if (this.refusal !== "") throw new ConnectError(this.refusal, Code.ResourceExhausted);
+    return this.answer(value);
   }
 
   private answer<T>(value: T): T {

@@ -1,5 +1,6 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, test } from "vitest";
+import { SessionReferences } from "../../../web/src/app/session_references";
 import { FrameSchema } from "../../../web/src/gen/phrenic/v1/frames_pb";
 import {
   HealthRange_Change,
@@ -7,9 +8,15 @@ import {
   StaticCurve_Kind,
   StaticCurveSchema,
 } from "../../../web/src/gen/phrenic/v1/references_pb";
+import type { Preset } from "../../../web/src/gen/phrenic/v1/scene_pb";
+import { SessionSchema } from "../../../web/src/gen/phrenic/v1/session_pb";
 import { campbellGraph } from "../../../web/src/graphs/catalogue";
 import { backdropOf, pressureAt, workOfBreathing } from "../../../web/src/graphs/references";
 import { SteadyRange } from "../../../web/src/graphs/window";
+import { SessionController } from "../../../web/src/session/session_controller";
+import { Signal } from "../../../web/src/state/signal";
+import { FakeClock, settle } from "../fakes/fake_clock";
+import { FakeServer } from "../fakes/fake_server";
 
 const range = (breath: string, change: HealthRange_Change, low: number, high: number) =>
   create(HealthRangeSchema, { breath, measure: "lung volume", change, low, high });
@@ -128,4 +135,22 @@ describe("a steady axis", () => {
     const [low, high] = new SteadyRange().of([[5, 5]], 1);
     expect(high - low).toBeGreaterThanOrEqual(1);
   });
+});
+
+test("ReferencesThatAreRefusedAreReadAgainAfterAPause", async () => {
+  const [server, clock] = [new FakeServer(), new FakeClock()];
+  server.refusal = "not now";
+  const controller = new SessionController(server.api, "thorax", clock);
+  let changes = 0;
+  new SessionReferences(server.api, controller, new Signal<Preset[]>([]), () => changes++, clock).start();
+  const state = async () => {
+    controller.receive(create(SessionSchema, { parameters: {} }));
+    await settle();
+  };
+  for (let i = 0; i < 10; i++) await state();
+  expect(server.referenceReads).toBe(1);
+  server.refusal = "";
+  await clock.advance(15_000);
+  for (let i = 0; i < 10; i++) await state();
+  expect([server.referenceReads, changes]).toEqual([2, 1]);
 });

@@ -46,3 +46,11 @@ test("ProvisionalValuesStayUntilTheNextOnes", () => {
     [2, 3],
   ]);
 });
+
+test("ProvisionalValuesAtTheTimeOfTheLastOnesRemoveNothing", () => {
+  const history = new TimeSeries(10);
+  history.add(0.5, [["v", 1]]);
+  history.add(0.5, [["v", 1]], true);
+  history.add(0.52, [["v", 2]]);
+  expect(history.times).toEqual([0.5, 0.52]);
+});

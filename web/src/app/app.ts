@@ -158,6 +158,14 @@ export class App {
     this.cameraSharing = new CameraSharing(api, sessionId, this.participation, this.viewer.rig, clock);
     const listener = {
       record: (numbers: Frame, present: boolean) => this.record(numbers, present),
+      gap: () => {
+        this.graphs.gap();
+        this.student.gap();
+      },
+      refused: (reason: string) => {
+        this.graphs.refused(reason);
+        this.student.refused(reason);
+      },
       referencesChanged: () => this.graphs.refresh(this.frames.frame),
     };
     this.numbers = new SessionNumbers(api, this.controller, this.presets, listener, clock);
@@ -234,9 +242,13 @@ export class App {
     if (secondSessionId === undefined || secondSessionId === sessionId) return undefined;
     const { viewer, frames, tools, layerStyles, controller, presets } = this;
     const mayChange = () => refusalReason(this.participation.roles.value) === "";
-    const recordBeside = (numbers: Frame, present: boolean) => this.student.recordBeside(numbers, present);
+    const besideSamples = {
+      sample: (numbers: Frame, present: boolean) => this.student.recordBeside(numbers, present),
+      gap: () => this.student.gapBeside(),
+      refused: (reason: string) => this.student.refused(reason, true),
+    };
     const shared = { viewer, frames, tools, layerStyles, controller, presets };
-    const primary = { ...shared, host: this.viewerHost(), mayChange, recordBeside };
+    const primary = { ...shared, host: this.viewerHost(), mayChange, besideSamples };
     return new SecondView(this.api, secondSessionId, primary, this.clock, {
       swap: () => open(`?${new URLSearchParams({ session: secondSessionId, beside: sessionId })}`),
       close: () => open(`?${new URLSearchParams({ session: sessionId })}`),

@@ -2,7 +2,7 @@ import { elementById } from "../dom/elements";
 import type { Timeline } from "../panels/view/timeline";
 import type { Fluoroscopy } from "./fluoroscopy";
 import type { SceneTools } from "./scene_tools";
-import { shortcuts } from "./shortcuts";
+import { type Shortcut, shortcuts } from "./shortcuts";
 import type { StudentView } from "./student_view";
 import { viewpointShortcuts } from "./viewpoint_shortcuts";
 
@@ -23,7 +23,6 @@ export interface KeyTargets {
 /** Returns the dialog that lists the keys of the page, which act from now on. */
 export function appShortcuts(targets: KeyTargets): HTMLDialogElement {
   const { tools, student, fluoroscopy, timeline } = targets;
-  const { measurements } = tools.measuring;
   const press = (id: string) => () => document.getElementById(id)?.click();
   const when = () => student.inLesson;
   const stepForward = () => (timeline.replaying ? timeline.stepFrame(1) : press("step")());
@@ -51,34 +50,42 @@ export function appShortcuts(targets: KeyTargets): HTMLDialogElement {
         when: () => !fluoroscopy.button.hidden,
         run: () => void fluoroscopy.toggle(),
       },
-      {
-        key: "Escape",
-        description: "End fluoroscopy",
-        when: () => fluoroscopy.isOpen,
-        run: () => fluoroscopy.close(),
-      },
-      {
-        key: "Escape",
-        description: "End measuring",
-        when: () => measurements.tool.value !== undefined,
-        run: () => measurements.use(undefined),
-      },
-      {
-        key: "Escape",
-        description: "Show all structures again",
-        when: () => tools.structures.isolated.value !== undefined,
-        run: () => tools.structures.showAll(),
-      },
-      {
-        key: "Escape",
-        description: "Remove all measurements",
-        when: () => measurements.all.value.length > 0,
-        run: () => measurements.clear(),
-      },
+      ...escapes(targets),
       { key: "p", description: "Save a screenshot", run: targets.photograph },
       { key: "s", description: "Share, copy, compare", run: targets.share },
     ],
     targets.undo,
     targets.redo,
   );
+}
+
+/** What the key Escape ends; the first one that is there. */
+function escapes({ tools, fluoroscopy }: KeyTargets): Shortcut[] {
+  const { measurements } = tools.measuring;
+  return [
+    {
+      key: "Escape",
+      description: "End fluoroscopy",
+      when: () => fluoroscopy.isOpen,
+      run: () => fluoroscopy.close(),
+    },
+    {
+      key: "Escape",
+      description: "End measuring",
+      when: () => measurements.tool.value !== undefined,
+      run: () => measurements.use(undefined),
+    },
+    {
+      key: "Escape",
+      description: "Show all structures again",
+      when: () => tools.structures.isolated.value !== undefined,
+      run: () => tools.structures.showAll(),
+    },
+    {
+      key: "Escape",
+      description: "Remove all measurements",
+      when: () => measurements.all.value.length > 0,
+      run: () => measurements.clear(),
+    },
+  ];
 }

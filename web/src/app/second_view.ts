@@ -3,7 +3,7 @@ import { GhostSelector } from "../appearance/ghosts";
 import type { LayerStyles } from "../appearance/layer_styles";
 import { VertexColorizer } from "../appearance/vertex_colorizer";
 import type { Api } from "../connection/api";
-import { SampleFeed } from "../connection/sample_feed";
+import { SampleFeed, type SampleListener } from "../connection/sample_feed";
 import { type ConnectionListener, SessionConnection } from "../connection/session_connection";
 import { make } from "../dom/elements";
 import { type FrameBuffer, maxWait } from "../frames/frame_buffer";
@@ -40,8 +40,8 @@ export interface PrimaryView {
   host: Pick<ViewerHost, "insets" | "reducedMotion" | "simplifier">;
   /** True if this viewer may play and pause the session. */
   mayChange(): boolean;
-  /** Called with the numbers of every sample of the second session. */
-  recordBeside(numbers: Frame, present: boolean): void;
+  /** Receives the samples of the second session. */
+  besideSamples: SampleListener;
 }
 
 /**
@@ -88,7 +88,7 @@ export class SecondView {
     this.connection = new SessionConnection(api, sessionId, this.connectionListener(), clock);
     this.trackCameraLeader(canvas);
     this.followAppearance();
-    const samples = new SampleFeed(api, sessionId, { sample: (...numbers) => primary.recordBeside(...numbers) }, clock);
+    const samples = new SampleFeed(api, sessionId, primary.besideSamples, clock);
     this.controller.session.subscribe(() => samples.wake());
     void this.connection.run();
     void samples.run();

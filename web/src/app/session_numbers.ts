@@ -15,6 +15,10 @@ const latest = 15_000;
 export interface NumbersListener {
   /** Records the numbers of a sample; `present`: of the state when reading began, between two samples. */
   record(numbers: Frame, present: boolean): void;
+  /** Samples before the next one are missing. */
+  gap(): void;
+  /** Why the numbers cannot be read; empty if they can. */
+  refused(reason: string): void;
   /** The ranges of health or the static curves have changed. */
   referencesChanged(): void;
 }
@@ -34,13 +38,13 @@ export class SessionNumbers {
     private readonly listener: NumbersListener,
     clock: Clock,
   ) {
-    this.samples = new SampleFeed(
-      api,
-      controller.sessionId,
-      { sample: (...numbers) => this.record(...numbers) },
-      clock,
-    );
-    this.references = new SessionReferences(api, controller, presets, () => listener.referencesChanged());
+    const feed = {
+      sample: (numbers: Frame, present: boolean) => this.record(numbers, present),
+      gap: () => listener.gap(),
+      refused: (reason: string) => listener.refused(reason),
+    };
+    this.samples = new SampleFeed(api, controller.sessionId, feed, clock);
+    this.references = new SessionReferences(api, controller, presets, () => listener.referencesChanged(), clock);
   }
 
   /** Begins to read, at the latest some seconds from now. */

@@ -6,11 +6,17 @@ import { breathLengthOf } from "../parameters/effort";
 import { activePreset } from "../parameters/presets";
 import type { SessionController } from "../session/session_controller";
 import type { Signal } from "../state/signal";
+import type { Clock } from "../timing/clock";
+
+/** Time after an error before the references are read again [ms]. */
+const afterError = 15_000;
 
 /** The ranges of health and static curves of a session, read again when its compliances change. */
 export class SessionReferences {
   private read: Omit<ShownReferences, "breath" | "period"> | undefined;
   private key = "";
+  /** The earliest time of the next call [ms]. */
+  private earliest = 0;
 
   constructor(
     private readonly api: Api,
@@ -18,6 +24,7 @@ export class SessionReferences {
     private readonly presets: Signal<Preset[]>,
     /** Called after the references were read. */
     private readonly changed: () => void,
+    private readonly clock: Clock,
   ) {}
 
   /** Reads the references now, and again after changes. */
@@ -33,12 +40,12 @@ export class SessionReferences {
     return { ...this.read, breath, period: breathLengthOf(parameters) };
   };
 
-  /** A lost connection leaves the references as they are; the next change tries again. */
+  /** An error leaves the references as they are; the next state of the session after a pause tries again. */
   private async follow(parameters: Parameters | undefined): Promise<void> {
     if (parameters === undefined) return;
     const { lungCompliance, chestWallCompliance, abdominalCompliance } = parameters;
     const key = [lungCompliance, chestWallCompliance, abdominalCompliance].join();
-    if (key === this.key) return;
+    if (key === this.key || this.clock.now() < this.earliest) return;
     this.key = key;
     const { sessionId } = this.controller;
     try {
@@ -48,6 +55,7 @@ export class SessionReferences {
       this.changed();
     } catch {
       this.key = "";
+      this.earliest = this.clock.now() + afterError;
     }
   }
 }

@@ -24,7 +24,7 @@ import type { ClassAnswers } from "../session/class_answers";
 import { fetchJson, type LessonPlace, presetOf, type SceneNames, withLessonPlace } from "../session/lessons";
 import { OwnLessons } from "../session/own_lessons";
 import { type PageView, rememberPageView, withPageView } from "../session/page_view";
-import type { Participation } from "../session/participation";
+import { type Participation, refusalReason } from "../session/participation";
 import type { SessionController } from "../session/session_controller";
 import { Signal } from "../state/signal";
 import { TimeSeries } from "../state/time_series";
@@ -75,6 +75,8 @@ export class StudentView {
   private readonly names: Promise<SceneNames>;
   private gotFrame: (frame: Frame) => void = () => undefined;
   private readonly firstFrame = new Promise<Frame>((resolve) => (this.gotFrame = resolve));
+  /** Why the samples of the session, and the one beside, cannot be read. */
+  private readonly refusals = ["", ""];
   /** The view of the lesson's step, once there is a scene to show. */
   private lessonView: LessonView | undefined;
 
@@ -85,8 +87,11 @@ export class StudentView {
     const { controller, participation, presets, secondView } = parts;
     this.names = whenShown(controller.session, parts.layerStyles, this.firstFrame);
     const { answers, identity } = parts;
-    const teaches = new Signal(false);
-    participation.roles.subscribe(({ mayChange, isOwner }) => teaches.set(mayChange || isOwner));
+    const [teaches, refusal] = [new Signal(false), new Signal("")];
+    participation.roles.subscribe((roles) => {
+      teaches.set(roles.mayChange || roles.isOwner);
+      refusal.set(refusalReason(roles));
+    });
     this.lessons = new LessonCard({
       fetchFile: fetchJson,
       names: () => this.names,
@@ -99,6 +104,7 @@ export class StudentView {
       picture: () => parts.tools.pictureForPaper(),
       predicts: () => this.graphs.subjects.length > 0,
       predict: (measure, done) => this.prediction.predict(measure, done),
+      refusal,
       print: () => window.print(),
       named: identity.isGraded,
     });
@@ -157,7 +163,24 @@ export class StudentView {
     this.besideHistory.add(numbers.time, valuesOf(numbers), present);
   }
 
-  /** Reads from a frame of the session which graphs there are. */
+  /** Samples of the session are missing: begins new curves, and ends a prediction of the breath. */
+  gap(): void {
+    this.history.clear();
+    this.prediction.interrupt();
+  }
+
+  /** Samples of the session beside are missing. */
+  gapBeside(): void {
+    this.besideHistory.clear();
+  }
+
+  /** Says why samples of the session, or the one beside, cannot be read; an empty reason if they can. */
+  refused(reason: string, beside = false): void {
+    this.refusals[Number(beside)] = reason;
+    this.graphs.refused(this.refusals);
+  }
+
+  /** Reads from a frame what graphs and the sentence can show; a lesson waits for the first one. */
   receive(frame: Frame): void {
     this.sentence.receive(frame);
     this.graphs.receive(frame);

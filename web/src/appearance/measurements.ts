@@ -62,6 +62,7 @@ export class Measurements {
   private next = 0;
   /** Ids of the measurements that were added last by `replaceKept`. */
   private readonly brought = new Set<number>();
+  private bringing = false;
 
   /** `partAt` returns the structure at a vertex. */
   constructor(
@@ -126,16 +127,14 @@ export class Measurements {
 
   /**
    * Adds kept measurements, in place of those that the last call added. Those of bodies that the scene lacks are left
-   * out. Measurements of the user stay.
+   * out. Measurements of the user stay; beside them there is room for fewer kept ones.
    */
   replaceKept(kept: KeptMeasurement[]): void {
     this.all.set(this.all.value.filter(({ id }) => !this.brought.has(id)));
     this.brought.clear();
-    for (const each of kept) {
-      const first = this.next;
-      this.addKept(each);
-      for (let id = first; id < this.next; id++) this.brought.add(id);
-    }
+    this.bringing = true;
+    for (const each of kept) this.addKept(each);
+    this.bringing = false;
   }
 
   private addKept({ tool, points }: KeptMeasurement): void {
@@ -198,8 +197,16 @@ export class Measurements {
     });
   }
 
+  /** Adds a measurement. If there are too many, drops the oldest one that `replaceKept` added, else the oldest one. */
   private add(measurement: Omit<Measurement, "id">): void {
-    this.all.set([...this.all.value, { ...measurement, id: this.next++ }].slice(-mostMeasurements));
+    const id = this.next++;
+    if (this.bringing) this.brought.add(id);
+    const all = [...this.all.value, { ...measurement, id }];
+    const dropped = Math.max(
+      0,
+      all.findIndex((each) => this.brought.has(each.id)),
+    );
+    this.all.set(all.length > mostMeasurements ? all.toSpliced(dropped, 1) : all);
   }
 }
 

@@ -7,7 +7,7 @@ import {
   SampledQuantity_Kind,
 } from "../gen/phrenic/v1/samples_pb";
 import type { Clock } from "../timing/clock";
-import type { Api } from "./api";
+import { type Api, errorText } from "./api";
 
 /** Time between two reads while samples come, while none come, and after an error [ms]. */
 const betweenReads = 200;
@@ -22,8 +22,10 @@ export interface SampleListener {
    * between two samples.
    */
   sample(numbers: Frame, present: boolean): void;
-  /** So many samples before the next one are missing: the page was too slow. */
-  leftOut?(count: number): void;
+  /** Samples before the next one are missing: the page was too slow, or the server kept none for it. */
+  gap?(): void;
+  /** Why the last read failed; empty after one that did not. */
+  refused?(reason: string): void;
 }
 
 /**
@@ -50,11 +52,15 @@ export class SampleFeed {
     const { signal } = this.stopped;
     while (!signal.aborted) {
       this.rest = new AbortController();
-      const wait = await this.read().then(
-        (came) => (came ? betweenReads : whileIdle),
-        () => afterError,
-      );
-      await this.clock.sleep(wait, AbortSignal.any([signal, this.rest.signal]));
+      let [wait, ends] = [afterError, signal];
+      try {
+        wait = (await this.read()) ? betweenReads : whileIdle;
+        ends = AbortSignal.any([signal, this.rest.signal]);
+        this.listener.refused?.("");
+      } catch (error) {
+        if (!signal.aborted) this.listener.refused?.(errorText(error));
+      }
+      await this.clock.sleep(wait, ends);
     }
   }
 
@@ -63,7 +69,7 @@ export class SampleFeed {
     this.stopped.abort();
   }
 
-  /** Reads soon: the session has begun to play, or was reset. */
+  /** Reads soon: the session has begun to play, or was reset. The pause after an error stays as long as it is. */
   wake(): void {
     this.rest.abort();
   }
@@ -95,8 +101,9 @@ export class SampleFeed {
   private receive({ batch }: ReadSamplesResponse): boolean {
     if (batch === undefined) return false;
     if (batch.quantities.length > 0) this.quantities = batch.quantities;
+    const { track } = this.position;
     this.position = { track: batch.track, last: batch.last };
-    if (batch.leftOut > 0n) this.listener.leftOut?.(Number(batch.leftOut));
+    if (batch.leftOut > 0n || (track !== 0n && batch.track !== track)) this.listener.gap?.();
     if (batch.present !== undefined) this.listener.sample(this.numbers(batch.present), true);
     for (const sample of batch.samples) this.listener.sample(this.numbers(sample), false);
     return batch.samples.length > 0;

@@ -8,19 +8,32 @@ export type DecodingRequest =
 /** What the worker posts for a frame. */
 export type DecodingAnswer = { number: number } & (FrameArrays | { problem: string });
 
-/** Returns the function that answers requests in their order, once the decoder is loaded. */
-export function answerWith(loading: Promise<WebAssembly.Module>) {
+/**
+ * Returns the function that answers requests in their order, once the decoder is loaded. A request after one that failed
+ * since `load` did loads again.
+ */
+export function answerWith(load: () => Promise<WebAssembly.Module>) {
+  let loading: Promise<WebAssembly.Module> | undefined = load();
+  loading.catch(() => undefined); // the first request reports it
   let bodies: DecodedBody[] = [];
+  /** Bases that the decoder does not have yet. */
+  let bases: EncodedBasis[] = [];
   let decoder: FrameDecoder | undefined;
   return async (request: DecodingRequest): Promise<DecodingAnswer | undefined> => {
     try {
-      const module = await loading;
       if ("bodies" in request) {
         bodies = request.bodies;
+        bases = [];
         decoder = undefined;
       }
+      if ("basis" in request) bases.push(request.basis);
+      loading ??= load();
+      const module = await loading.catch((error: unknown) => {
+        loading = undefined;
+        throw error;
+      });
       decoder ??= new FrameDecoder(module, bodies);
-      if ("basis" in request) decoder.addBasis(request.basis);
+      for (const basis of bases.splice(0)) decoder.addBasis(basis);
       return "frame" in request ? { number: request.number, ...decoder.decode(request.frame) } : undefined;
     } catch (error) {
       if (!("frame" in request)) return undefined; // the frames of that scene or basis say what is wrong

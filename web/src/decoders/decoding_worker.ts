@@ -6,7 +6,7 @@ const scope = self as unknown as {
   onmessage: ((event: MessageEvent) => void) | null;
   postMessage(message: unknown, transfer: Transferable[]): void;
 };
-const answer = answerWith(loadDecoder());
+const answer = answerWith(loadDecoder);
 let last = Promise.resolve();
 scope.onmessage = ({ data }) => {
   last = last.then(async () => {

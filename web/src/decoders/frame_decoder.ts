@@ -5,6 +5,8 @@ import { WasmDecoder } from "./wasm_decoder";
 
 /** Number of bases that are kept, since frames of the previous one may still arrive. */
 const maxBases = 2;
+/** Number of decoders that are kept, one for each set of bodies: the memory of a decoder never shrinks. */
+const maxDecoders = 3;
 
 /** What the decoder needs of a body, of a basis and of a frame: data that can be posted to a worker. */
 export type DecodedBody = Pick<Body, "placement" | "rest" | "edges" | "triangles" | "firstVertex">;
@@ -54,10 +56,13 @@ export class FrameDecoder {
 
   private decoderOf({ codec, bodies, basisEpoch }: EncodedFrame, present: DecodedBody[]): WasmDecoder {
     const key = `${codec === Codec.BASIS ? basisEpoch : ""}:${bodies.join()}`;
-    const cached = this.decoders.get(key);
-    if (cached !== undefined) return cached;
-    const decoder = this.makeDecoder(present, codec === Codec.BASIS ? this.shapesOf(present, basisEpoch) : []);
+    const decoder =
+      this.decoders.get(key) ??
+      this.makeDecoder(present, codec === Codec.BASIS ? this.shapesOf(present, basisEpoch) : []);
+    // In the order of their last use.
+    this.decoders.delete(key);
     this.decoders.set(key, decoder);
+    for (const oldest of [...this.decoders.keys()].slice(0, -maxDecoders)) this.decoders.delete(oldest);
     return decoder;
   }
 

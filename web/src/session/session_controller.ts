@@ -70,16 +70,17 @@ export class SessionController {
     this.session.set({ ...known, control });
   }
 
-  /** Plays; with a companion, each session waits for the other. */
-  play(speed: Speed): Promise<void> {
+  /** Plays; with a companion, each session waits for the other. Returns false if the server refused it. */
+  play(speed: Speed): Promise<boolean> {
     void this.companion?.playSynchronised(speed, this.sessionId);
     return this.playSynchronised(speed, this.companion?.sessionId);
   }
 
-  /** Pauses; with a companion, both stop at the same simulated time. */
-  async pause(): Promise<void> {
-    await Promise.all([this.pauseThis(), this.companion?.pauseThis()]);
+  /** Pauses; with a companion, both stop at the same simulated time. Returns false if the server refused it. */
+  async pause(): Promise<boolean> {
+    const [paused] = await Promise.all([this.pauseThis(), this.companion?.pauseThis()]);
     await this.alignTimes();
+    return paused;
   }
 
   /** Pauses both sessions, lets the one behind catch up, and plays on in step. */
@@ -96,9 +97,9 @@ export class SessionController {
   }
 
   /** Resets the session to its initial state; with a companion, both. */
-  reset(): Promise<void> {
+  async reset(): Promise<void> {
     void this.companion?.reset();
-    return this.call(() => this.api.sessions.resetSession({ sessionId: this.sessionId }));
+    await this.call(() => this.api.sessions.resetSession({ sessionId: this.sessionId }));
   }
 
   /** Sets a parameter and records the change for undo; rapid changes are merged. */
@@ -143,8 +144,8 @@ export class SessionController {
   }
 
   /** Releases all pulled vertices, also those of other viewers. */
-  releasePulls(): Promise<void> {
-    return this.call(() => this.api.sessions.pullSession({ sessionId: this.sessionId, releaseOthers: true }));
+  async releasePulls(): Promise<void> {
+    await this.call(() => this.api.sessions.pullSession({ sessionId: this.sessionId, releaseOthers: true }));
   }
 
   /** Sets parameters immediately and resolves when they are applied. */
@@ -205,17 +206,17 @@ export class SessionController {
     }
   }
 
-  private playSynchronised(speed: Speed, inStepWith = ""): Promise<void> {
+  private playSynchronised(speed: Speed, inStepWith = ""): Promise<boolean> {
     const pace = speed === "fastest" ? { asFastAsPossible: true } : { speed };
     return this.call(() => this.api.sessions.playSession({ sessionId: this.sessionId, inStepWith, ...pace }));
   }
 
-  private pauseThis(): Promise<void> {
+  private pauseThis(): Promise<boolean> {
     return this.call(() => this.api.sessions.pauseSession({ sessionId: this.sessionId }));
   }
 
-  private stepThis(ticks: number): Promise<void> {
-    return this.call(() => this.api.sessions.stepSession({ sessionId: this.sessionId, ticks: BigInt(ticks) }));
+  private async stepThis(ticks: number): Promise<void> {
+    await this.call(() => this.api.sessions.stepSession({ sessionId: this.sessionId, ticks: BigInt(ticks) }));
   }
 
   /** Lets the paused session that is behind step to the time of the other, if the difference is small. */
@@ -266,25 +267,28 @@ export class SessionController {
     return this.api.sessions.getSession({ sessionId: this.sessionId });
   }
 
-  private send(parameters: ParameterValues, preset = ""): Promise<void> {
-    return this.call(async () => {
+  private async send(parameters: ParameterValues, preset = ""): Promise<void> {
+    await this.call(async () => {
       const answer = await this.api.sessions.updateParameters({ sessionId: this.sessionId, parameters, preset });
       return { session: answer.session, notice: answer.warnings.join(" ") };
     });
   }
 
-  private sendPulls(pulls: PullValues[]): Promise<void> {
-    return this.call(() => this.api.sessions.pullSession({ sessionId: this.sessionId, pulls }));
+  private async sendPulls(pulls: PullValues[]): Promise<void> {
+    await this.call(() => this.api.sessions.pullSession({ sessionId: this.sessionId, pulls }));
   }
 
-  private async call(call: () => Promise<{ session?: Session; notice?: string }>): Promise<void> {
+  /** Returns true on success. */
+  private async call(call: () => Promise<{ session?: Session; notice?: string }>): Promise<boolean> {
     try {
       const { session, notice } = await call();
       this.receive(session);
       this.notice.set(notice ?? "");
+      return true;
     } catch (error) {
       // The connection reports an unreachable server.
       if (!isUnreachable(error)) this.notice.set(errorText(error));
+      return false;
     }
   }
 }

@@ -13,12 +13,13 @@ export class TimeSeries {
    */
   add(time: number, values: [name: string, value: number][], provisional = false): void {
     if (this.provisional) this.removeLast();
-    this.provisional = provisional;
+    this.provisional = false;
     const last = this.times.at(-1);
     if (last !== undefined && time === last) return;
     const known = [...this.series.keys()];
     const same = values.length === known.length && values.every(([name], i) => name === known[i]);
     if (!same || (last !== undefined && time < last)) this.restart(values.map(([name]) => name));
+    this.provisional = provisional;
     this.times.push(time);
     for (const [name, value] of values) this.series.get(name)?.push(value);
     if (this.times[0] < time - this.span) this.discard(this.indexAt(time - this.span));
@@ -37,6 +38,7 @@ export class TimeSeries {
 
   /** Removes all values and names. */
   clear(): void {
+    this.provisional = false;
     this.restart([]);
   }
 

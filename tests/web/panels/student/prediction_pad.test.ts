@@ -124,3 +124,44 @@ test("ALessonAsksForOneMeasureAndGetsTheDistanceOnce", async () => {
   pad.draw();
   expect(told).toEqual([[0, "mm"]]);
 });
+
+function padAt(server: FakeServer) {
+  const controller = new SessionController(server.api, "thorax", new FakeClock());
+  const history = new TimeSeries(60);
+  history.add(2, [["v", 0.0025]]);
+  const pad = new PredictionPad({ controller, history, subjects: () => [air], catchUp: () => Promise.resolve() });
+  const press = async (id: string) => {
+    pad.element.querySelector<HTMLElement>(`#${id}`)!.click();
+    await settle();
+  };
+  const words = () => pad.element.querySelector("#prediction-words")!.textContent;
+  const isDrawn = () => !pad.element.querySelector("svg")!.hasAttribute("hidden");
+  return { pad, press, words, isDrawn, history };
+}
+
+test("ASessionThatMayNotBePausedIsNotPredicted", async () => {
+  const server = new FakeServer();
+  const { press, words, isDrawn } = padAt(server);
+  server.refusal = "Viewers may not pause.";
+  await press("predict");
+  expect([isDrawn(), words()]).toEqual([false, "Viewers may not pause."]);
+  server.refusal = "";
+  await press("predict");
+  expect(isDrawn()).toBe(true);
+  server.refusal = "Viewers may not play.";
+  await press("predict-play");
+  expect(words()).toBe("Viewers may not play.");
+});
+
+test("ABreathWithMissingSamplesIsNotJudged", async () => {
+  const { pad, press, words, isDrawn, history } = padAt(new FakeServer());
+  pad.interrupt();
+  expect(words()).toBe("");
+  await press("predict");
+  await press("predict-play");
+  history.clear();
+  pad.interrupt();
+  history.add(60, [["v", 0.0025]]);
+  pad.draw();
+  expect([isDrawn(), words()]).toEqual([false, "A part of the breath is missing: predict again."]);
+});

@@ -145,6 +145,7 @@ function card(files: Record<string, unknown>) {
   };
   const names = async () => sceneNames("thorax", ["ribs", "lungs"], ["lung volume"]);
   const answers: [place: object, right: boolean][] = [];
+  const refusal = new Signal("");
   const stored = new Map<string, string>();
   const storage = { getItem: (key: string) => stored.get(key) ?? null, setItem: (k: string, v: string) => void stored.set(k, v) }; // prettier-ignore
   const own = new OwnLessons(storage);
@@ -162,11 +163,12 @@ function card(files: Record<string, unknown>) {
       done(measure === "lung volume" ? 0.2 : 9, { unit: "l", digits: 2 } as PredictionSubject);
       return true;
     },
+    refusal,
     named: false,
     print: () => undefined,
     keep: async () => create(LessonStepSchema, { preset: "deep", view: { cut: "coronal", cutPosition: 0.4 } }),
   };
-  return { card: new LessonCard(actions), played, answers, own };
+  return { card: new LessonCard(actions), played, answers, own, refusal };
 }
 
 const submit = (form: HTMLFormElement) => form.onsubmit?.(new Event("submit", { cancelable: true }) as SubmitEvent);
@@ -195,10 +197,16 @@ test("APredictedCurveIsAnAnswerAndNoQuestionOfATest", async () => {
       },
     ],
   };
-  const { card: player, answers } = card({ "lessons/one.json": drawn });
+  const { card: player, answers, refusal } = card({ "lessons/one.json": drawn });
+  refusal.set("Anna controls this session.");
   await player.start({ name: "one", step: 1 });
   expect(player.element.querySelector("#lesson-pretest")).toBe(null);
-  player.element.querySelector<HTMLElement>("#lesson-predict")!.click();
+  const start = player.element.querySelector<HTMLButtonElement>("#lesson-predict")!;
+  const why = player.element.querySelector<HTMLElement>("#lesson-refusal")!;
+  expect([start.disabled, why.hidden, why.textContent]).toEqual([true, false, "Anna controls this session."]);
+  refusal.set("");
+  expect([start.disabled, why.hidden]).toEqual([false, true]);
+  start.click();
   expect(player.element.querySelector(".answer")!.textContent).toBe("0.20 l apart. Right. So.");
   expect(answers).toEqual([[{ lesson: "one", step: 1, phase: 0 }, true]]);
 });

@@ -1,6 +1,7 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, test, vi } from "vitest";
 import { FrameSchema } from "../../../../web/src/gen/phrenic/v1/frames_pb";
+import { GraphsPanel } from "../../../../web/src/panels/readings/graphs";
 import { StudentGraphsPanel } from "../../../../web/src/panels/student/student_graphs_panel";
 import { TimeSeries } from "../../../../web/src/state/time_series";
 
@@ -41,4 +42,30 @@ test("TheLegendFollowsTheColoursOfThePage", () => {
   expect(onPaper).not.toBe("");
   expect(colour()).not.toBe(onPaper);
   light.mockRestore();
+});
+
+test("ARefusalOfEitherSessionIsShown", () => {
+  const { shown } = panel(() => "second view");
+  const words = () => shown.element.querySelector("[role=status]")!.textContent;
+  shown.refused(["", "there are too many readers"]);
+  expect(words()).toBe("No new values: there are too many readers");
+  shown.refused(["", ""]);
+  expect(words()).toBe("");
+});
+
+test("TheExpertsGraphsShowARefusal", () => {
+  const graphs = new GraphsPanel(
+    () => "thorax",
+    () => [],
+    () => undefined,
+  );
+  const words = () => graphs.element.querySelector("#graphs-span")!.textContent;
+  const press = () => graphs.element.querySelector<HTMLElement>("#graphs-pause")!.click();
+  press();
+  graphs.refused("there are too many readers");
+  expect(words()).toContain("held");
+  press();
+  expect(words()).toBe("No new values: there are too many readers");
+  graphs.refused("");
+  expect(words()).toBe("");
 });

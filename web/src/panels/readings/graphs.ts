@@ -7,6 +7,7 @@ import type { TimeSpan } from "../../graphs/window";
 import { TimeSeries } from "../../state/time_series";
 import { GraphTile } from "./graph_tile";
 import { MModePictures } from "./m_mode_pictures";
+import { refusalWords } from "./refusal_words";
 import { fixed, t } from "../../language/translate";
 
 /** Duration that is kept, and the durations that can be shown [simulated s]. */
@@ -33,6 +34,7 @@ export class GraphsPanel {
   private specsKey = "";
   private held: TimeSpan | undefined;
   private drawn = -1;
+  private refusal = "";
 
   constructor(
     private readonly fileName: () => string,
@@ -81,6 +83,17 @@ export class GraphsPanel {
     this.resume();
   }
 
+  /** Begins new curves: samples are missing. */
+  gap(): void {
+    this.history.clear();
+  }
+
+  /** Says why samples cannot be read, or nothing if they can. */
+  refused(reason: string): void {
+    this.refusal = refusalWords(reason);
+    if (this.held === undefined) this.words.textContent = this.refusal;
+  }
+
   /** Draws new data; returns early if there is none. */
   draw(): void {
     const { times } = this.history;
@@ -119,7 +132,7 @@ export class GraphsPanel {
   private resume(): void {
     this.held = undefined;
     this.drawn = -1;
-    this.words.textContent = "";
+    this.words.textContent = this.refusal;
     this.label(t("Hold the graphs"), "pause");
     this.draw();
   }

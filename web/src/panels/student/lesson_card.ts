@@ -10,12 +10,11 @@ import { ClassResults, type ListAnswers } from "./class_results";
 import { LessonList } from "./lesson_list";
 import { LessonMaker } from "./lesson_maker";
 import { differenceWords, lessonTest, questionCount, type Score } from "./lesson_test";
-import { predictionForm } from "./prediction_form";
+import { predictionForm, refusePrediction } from "./prediction_form";
 import type { OnPredicted } from "./prediction_pad";
 import { questionForm } from "./question_form";
 import type { KeepView } from "./step_form";
 import { StepPictures } from "./step_pictures";
-import { openWorksheet } from "./worksheet_page";
 import { t } from "../../language/translate";
 
 /** What a lesson does to the page, and where it comes from. */
@@ -38,6 +37,8 @@ export interface LessonActions {
   predicts(): boolean;
   /** Has the user predict a measure and play the breath; false if the scene does not show it. */
   predict(measure: string, done: OnPredicted): boolean;
+  /** Why this viewer may not play the session, so that nothing can be predicted; empty if it may. */
+  refusal: Signal<string>;
   /** Prints the page. */
   print(): void;
   /** True if a school's platform knows who answers. */
@@ -65,6 +66,7 @@ export class LessonCard {
     });
     this.results = new ClassResults(actions.listAnswers);
     actions.teaches.subscribe((teaches) => this.results.element.classList.toggle("hidden", !teaches));
+    actions.refusal.subscribe((words) => refusePrediction(this.element, words));
     this.showList();
   }
 
@@ -104,6 +106,7 @@ export class LessonCard {
     const { lesson, actions } = this;
     if (lesson === undefined) return;
     await this.keepPicture();
+    const { openWorksheet } = await import("./worksheet_page");
     const parts = { pictures: this.pictures.byStep, predicts: actions.predicts() };
     const closed = () => this.element.querySelector<HTMLElement>("#lesson-print")?.focus();
     openWorksheet(lesson, parts, { teaches: actions.teaches.value, print: () => actions.print(), closed });
@@ -131,6 +134,7 @@ export class LessonCard {
     const buttons = [this.buttons(place), this.printButton()];
     this.element.replaceChildren(this.head(lesson, place), ...parts, this.results.element, ...buttons);
     const asks = lesson.steps.some((each) => each.question !== undefined);
+    refusePrediction(this.element, this.actions.refusal.value);
     this.results.show(asks ? { ...place, lesson } : undefined);
     title.focus();
     this.actions.play(lesson, step);

@@ -29,5 +29,16 @@ export function predictionForm(
   };
   const start = make("button", { type: "button", id: "lesson-predict", onclick }, t("Draw your curve"));
   const legend = make("legend", {}, question.words);
-  return make("fieldset", { className: "question" }, legend, start, result);
+  const refusal = make("p", { className: "faint", id: "lesson-refusal", hidden: true });
+  return make("fieldset", { className: "question" }, legend, start, refusal, result);
+}
+
+/** Disables the form of a prediction within an element, if there is one, and says why; empty words enable it. */
+export function refusePrediction(within: HTMLElement, words: string): void {
+  const start = within.querySelector<HTMLButtonElement>("#lesson-predict");
+  const refusal = within.querySelector<HTMLElement>("#lesson-refusal");
+  if (start === null || refusal === null) return;
+  start.disabled = words !== "";
+  refusal.hidden = words === "";
+  refusal.textContent = words;
 }

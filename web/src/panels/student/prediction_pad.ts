@@ -89,6 +89,13 @@ export class PredictionPad {
     return true;
   }
 
+  /** Ends a prediction whose breath is played: a part of it is missing. */
+  interrupt(): void {
+    if (this.phase !== "playing") return;
+    this.show("idle");
+    this.words.textContent = t("A part of the breath is missing: predict again.");
+  }
+
   private get subject(): PredictionSubject | undefined {
     const subjects = this.source.subjects();
     return subjects.find(({ measure }) => measure === this.measure) ?? subjects.at(0);
@@ -97,7 +104,7 @@ export class PredictionPad {
   private async start(): Promise<void> {
     const { controller, history, catchUp } = this.source;
     const { subject } = this;
-    await controller.pause();
+    if (!(await controller.pause())) return this.refuse("idle");
     await catchUp();
     if (subject === undefined) return;
     const values = history.series.get(subject.key) ?? [];
@@ -121,7 +128,14 @@ export class PredictionPad {
     this.prediction = this.prediction?.over(this.breathLength);
     this.drawCurve();
     this.show("playing");
-    await this.source.controller.play(this.source.controller.session.value?.speed || 1);
+    const { controller } = this.source;
+    if (!(await controller.play(controller.session.value?.speed || 1))) this.refuse("drawing");
+  }
+
+  /** The server did not pause or play the session. */
+  private refuse(phase: PredictionPad["phase"]): void {
+    this.show(phase);
+    this.words.textContent = this.source.controller.notice.value;
   }
 
   private get breathLength(): number {

@@ -11,6 +11,7 @@ import {
 import type { ShownReferences } from "../../graphs/references";
 import { TimeSeries } from "../../state/time_series";
 import { GraphTile } from "../readings/graph_tile";
+import { refusalWords } from "../readings/refusal_words";
 import { t } from "../../language/translate";
 
 /** Time shown [simulated s]. */
@@ -27,6 +28,7 @@ export class StudentGraphsPanel {
   readonly element = make("section", { id: "student-graphs", ariaLabel: t("Graphs") });
   private readonly tiles = make("div");
   private readonly kinds = make("div", { className: "causes kinds", role: "group", ariaLabel: t("Second graph") });
+  private readonly refusal = make("p", { className: "faint", role: "status" });
   private readonly joined = new TimeSeries(2 * span);
   private specs: ReturnType<typeof studentGraphs> = { volume: undefined, others: [] };
   /** What can be predicted in the scene. */
@@ -44,7 +46,7 @@ export class StudentGraphsPanel {
     private readonly fileName: () => string,
     private readonly references: () => ShownReferences | undefined = () => undefined,
   ) {
-    this.element.append(make("h2", { className: "unseen" }, t("Graphs")), this.tiles, this.kinds);
+    this.element.append(make("h2", { className: "unseen" }, t("Graphs")), this.refusal, this.tiles, this.kinds);
   }
 
   /** Reads the available graphs from a frame. */
@@ -66,6 +68,12 @@ export class StudentGraphsPanel {
     }
     const end = Math.max(this.drawn.times.at(-1) ?? 0, span);
     for (const tile of this.shown) tile.show({ start: end - span, end }, undefined);
+  }
+
+  /** Says why samples of the sessions cannot be read, or nothing if they can. */
+  refused(reasons: string[]): void {
+    const words = refusalWords(reasons.find((each) => each !== "") ?? "");
+    if (words !== this.refusal.textContent) this.refusal.textContent = words;
   }
 
   private get drawn(): TimeSeries {

@@ -38,7 +38,7 @@ export function playbackPanel(controller: SessionController): HTMLElement {
   return make("div", { className: "playback" }, reset, toggle, step, stride, speed);
 }
 
-function togglePlay(controller: SessionController, speed: Speed): Promise<void> {
+function togglePlay(controller: SessionController, speed: Speed): Promise<boolean> {
   return controller.session.value?.state === SessionState.PLAYING ? controller.pause() : controller.play(speed);
 }
 
