@@ -142,7 +142,9 @@ TEST(Absorbers, OfLobesAreLungsOnlyInAbsenceOfALung) {
     std::vector<std::string> found;
     const auto model = CompileText(text);
     if (model == nullptr) return found;
-    for (const LungNow& lung : AbsorbersAt(*model, model->InitialState())->lungs) found.push_back(lung.name);
+    const auto absorbers = AbsorbersAt(*model, model->InitialState());
+    EXPECT_TRUE(absorbers.ok());
+    for (const LungNow& lung : absorbers->lungs) found.push_back(lung.name);
     return found;
   };
   EXPECT_THAT(lungs_of({"lobe-upper-left", "lung-left"}), ElementsAre("lung-left"));
