@@ -188,6 +188,29 @@ TEST_F(ExporterTest, APageHasTheWholeSceneOverOneBreathAfterTheFirst) {
   }
 }
 
+TEST_F(ExporterTest, APageLeavesOutMechanicsThatTheSceneHidesAndNumbersTheOthersAnew) {
+  model_ = CompileText(Triangle(R"(
+    layers { name: "hidden" title: "Hidden" color: "#7d9ec0" opacity: 0 }
+    bodies {
+      name: "coarse" layer: "hidden" role: ROLE_DEFORMABLE mass: 1
+      polyhedron { vertices { z: 1 } vertices { x: 1 z: 1 } vertices { y: 1 z: 1 } triangles { a: 0 b: 1 c: 2 } }
+    }
+    bodies {
+      name: "seen" layer: "tissue" role: ROLE_DEFORMABLE mass: 1
+      polyhedron { vertices { z: 2 } vertices { x: 1 z: 2 } vertices { y: 1 z: 2 } triangles { a: 0 b: 1 c: 2 } }
+    })"));
+  request_.set_format("html");
+  request_.set_seconds(0.5);
+  ASSERT_TRUE(Export().ok());
+  const v1::OfflineMotion motion = Motion();
+  ASSERT_EQ(motion.bodies_size(), 3);
+  EXPECT_EQ(motion.bodies(2).name(), "seen");
+  EXPECT_EQ(motion.bodies(2).body_index(), 2);
+  EXPECT_EQ(motion.bodies(2).body_count(), 3);
+  EXPECT_EQ(motion.bodies(2).first_vertex(), 3) << "after those of the sheet";
+  EXPECT_THAT(motion.frames(0).bodies(), testing::ElementsAre(1, 2));
+}
+
 TEST_F(ExporterTest, EqualRunsHaveEqualPages) {
   request_.set_format("html");
   request_.set_seconds(0.5);

@@ -1,5 +1,6 @@
 #include "server/session/export/page_writer.h"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <utility>
@@ -14,6 +15,12 @@ namespace {
 
 constexpr std::string_view kMotionPlace = "__PHRENIC_MOTION__";
 constexpr std::size_t kMostFrameBytes = std::size_t{64} << 20;
+
+// True for what computes the motion of what is seen, and is not seen itself.
+bool IsHiddenMechanics(const BodyModel& body, const v1::GetGeometryResponse& geometry) {
+  const bool mechanics = body.first_vertex >= 0 || body.anatomy.structure() == v1::STRUCTURE_INNER_CAGE;
+  return mechanics && geometry.opacity() == 0;
+}
 
 }  // namespace
 
@@ -43,10 +50,31 @@ absl::Status PageWriter::Begin(const Run& run) {
   *motion_.mutable_report() = model_->report;
   motion_.mutable_report()->clear_compile_seconds();
   motion_.mutable_report()->clear_stages();
-  for (int body = 0; body < static_cast<int>(model_->bodies.size()); ++body) {
-    *motion_.add_bodies() = stream::MakeGeometry(*model_, layout_, body);
-  }
+  AddBodies();
   return absl::OkStatus();
+}
+
+void PageWriter::AddBodies() {
+  std::vector<v1::GetGeometryResponse> all;
+  for (int body = 0; body < static_cast<int>(model_->bodies.size()); ++body) {
+    all.push_back(stream::MakeGeometry(*model_, layout_, body));
+  }
+  const bool shows_any = std::any_of(all.begin(), all.end(), [](const auto& each) { return each.opacity() > 0; });
+  int first_vertex = 0;
+  for (v1::GetGeometryResponse& geometry : all) {
+    const int body = geometry.body_index();
+    const BodyModel& model = model_->bodies[static_cast<std::size_t>(body)];
+    numbers_.push_back(motion_.bodies_size());
+    if (shows_any && IsHiddenMechanics(model, geometry)) continue;
+    geometry.set_body_index(motion_.bodies_size());
+    if (geometry.placement() == v1::PLACEMENT_STREAMED) {
+      geometry.set_first_vertex(first_vertex);
+      first_vertex += static_cast<int>(model.mesh.vertices.cols());
+      streamed_.push_back(body);
+    }
+    *motion_.add_bodies() = std::move(geometry);
+  }
+  for (v1::GetGeometryResponse& geometry : *motion_.mutable_bodies()) geometry.set_body_count(motion_.bodies_size());
 }
 
 absl::Status PageWriter::AddFrame(const Run& run) {
@@ -55,12 +83,13 @@ absl::Status PageWriter::AddFrame(const Run& run) {
                                      .parameters = run.parameters(),
                                      .made = absl::UnixEpoch()};
   for (std::size_t i = 0; i < kBoundLevels.size(); ++i) {
-    const stream::Bytes bytes =
-        encoder_.Encode(snapshot, {.codec = v1::CODEC_PREDICTED, .bound_level = kBoundLevels[i]});
+    const stream::Bytes bytes = encoder_.Encode(
+        snapshot, {.codec = v1::CODEC_PREDICTED, .bound_level = kBoundLevels[i], .chosen = true, .bodies = streamed_});
     v1::WatchFramesResponse response;
     if (bytes == nullptr || !response.ParseFromString(*bytes)) {
       return absl::InternalError(absl::StrCat("the frame at ", run.state().time, " s has numbers that are not finite"));
     }
+    for (int& body : *response.mutable_frame()->mutable_bodies()) body = numbers_[static_cast<std::size_t>(body)];
     frames_[i].Add(std::move(*response.mutable_frame()));
     if (i + 1 == kBoundLevels.size()) coarsest_bytes_ += bytes->size();
   }

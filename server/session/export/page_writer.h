@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "phrenic/v1/offline.pb.h"
@@ -22,8 +23,8 @@ absl::StatusOr<std::string> ReadPageTemplate(const std::string& path);
 
 // Holds the frames in memory, encoded as viewers get them (CODEC_PREDICTED) within 0.1, 0.2, 0.5 and 1 mm, and writes
 // the page at the end with the finest that gives at most kPageBytes; with those of 1 mm if none does. The page contains
-// a v1::OfflineMotion; equal runs give equal bytes. RESOURCE_EXHAUSTED if the frames within 1 mm have more than 64 MiB;
-// INTERNAL if a number is not finite.
+// a v1::OfflineMotion, without mechanics that the scene hides; equal runs give equal bytes. RESOURCE_EXHAUSTED if the
+// frames within 1 mm have more than 64 MiB; INTERNAL if a number is not finite.
 class PageWriter final : public MotionWriter {
  public:
   // `page` is the template.
@@ -38,6 +39,8 @@ class PageWriter final : public MotionWriter {
   static constexpr std::array<int, 4> kBoundLevels = {6, 7, 8, 9};  // 0.1, 0.2, 0.5, 1 mm
   using Frames = google::protobuf::RepeatedPtrField<v1::Frame>;
 
+  // Adds the bodies of the page.
+  void AddBodies();
   // Returns the page with the frames of one bound, of which it takes the memory.
   std::string MakePage(Frames& frames);
 
@@ -46,7 +49,9 @@ class PageWriter final : public MotionWriter {
   stream::Encoder encoder_;
   const std::string page_;
   const record::Sink sink_;
-  v1::OfflineMotion motion_;                        // without frames
+  v1::OfflineMotion motion_;   // without frames
+  std::vector<int> streamed_;  // bodies of the page with positions in frames, by number in the model
+  std::vector<int> numbers_;   // in the page, by number in the model
   std::array<Frames, kBoundLevels.size()> frames_;  // by error bound
   std::size_t coarsest_bytes_ = 0;                  // of the frames with the largest bound
 };
