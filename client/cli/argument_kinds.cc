@@ -68,6 +68,7 @@ constexpr KindRow kKindRows[] = {
     {"--codec", Kind::kOther, "CODEC", ""},
     {"calibrate --vary", Kind::kOther, "NAME[:LOW:HIGH]", ""},
     {"--vary", Kind::kOther, "NAME:LOW:HIGH", ""},
+    {"watch --measure", Kind::kOther, "NAME", ""},
     {"--measure", Kind::kOther, "MEASURE[:STATISTIC]", ""},
     {"--repair", Kind::kChoice, "REPAIR,...", "weld slivers fins orient all"},
     {"--labels", Kind::kFile, "NAME or FILE", ""},

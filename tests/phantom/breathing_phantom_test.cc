@@ -75,7 +75,7 @@ TEST_F(Phantom, LabelsHaveTheVolumesOfTheSurfaces) {
       const double allowed = 1.5 * std::pow(kSpacing, 3) * std::sqrt(area) / kSpacing;
       EXPECT_NEAR(volume, voxels.enclosed_mm3, allowed) << All()[s].name << " in phase " << phase;
       if (voxels.enclosed_mm3 > 2e5) {
-        EXPECT_NEAR(volume / voxels.enclosed_mm3, 1, 0.01) << All()[s].name;
+        EXPECT_NEAR(volume / voxels.enclosed_mm3, 1, 0.02) << All()[s].name;
       }
       EXPECT_LE(voxels.labelled, voxels.inside);
     }
@@ -106,7 +106,7 @@ TEST_F(Phantom, TheFieldBringsTheLabelsOfRestOntoThoseOfThePeak) {
   EXPECT_GT(mean_with, 0.9);
   EXPECT_LT(mean_without, 0.65);
   for (const char* organ : {"lung_right", "lung_left", "liver", "heart", "stomach", "spleen"}) {
-    EXPECT_GT(with.at(organ), 0.96) << organ;
+    EXPECT_GT(with.at(organ), 0.95) << organ;
     EXPECT_LT(without.at(organ), with.at(organ) - 0.05) << organ;
     EXPECT_LT(backwards.at(organ), without.at(organ)) << organ;
   }

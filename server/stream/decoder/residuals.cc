@@ -58,6 +58,7 @@ const char* ResidualReader::Read(std::string_view bytes, std::size_t places, Zst
 
 const char* ResidualReader::Unpack(PaddedSteps& steps) const {
   steps.assign(4 * places_, 0);
+  if (places_ == 0) return nullptr;
   Varints overflow(overflow_);
   std::size_t i = 0;  // residuals before: all x first
   for (std::size_t axis = 0; axis < 3; ++axis) {
