@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "server/jobs/queue.h"
-#include "server/schema/thread_priority.h"
+#include "server/jobs/thread_priority.h"
 
 namespace phrenic::jobs {
 

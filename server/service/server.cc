@@ -11,6 +11,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "phrenic/v1/server.grpc.pb.h"
+#include "server/jobs/thread_priority.h"
+#include "server/mechanics/parallel/compile_threads.h"
 #include "server/mechanics/parallel/parallel_for.h"
 #include "server/service/access_service.h"
 #include "server/service/calls/access_guard.h"
@@ -386,6 +388,7 @@ absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
 Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
+  SetCompileThreadStart(jobs::LowerThreadPriority);
   if (absl::Status status = CheckOptions(options); !status.ok()) return status;
   auto opened = Parts::Open(options);
   if (!opened.ok()) return opened.status();

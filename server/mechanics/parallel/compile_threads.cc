@@ -6,8 +6,6 @@
 #include <thread>
 #include <vector>
 
-#include "server/schema/thread_priority.h"
-
 namespace phrenic {
 namespace {
 
@@ -18,7 +16,14 @@ std::atomic<int>& Most() {
   return most;
 }
 
+std::atomic<void (*)()>& FirstCall() {
+  static std::atomic<void (*)()> start = [] {};
+  return start;
+}
+
 }  // namespace
+
+void SetCompileThreadStart(void (*start)()) { FirstCall() = start; }
 
 void SetCompileThreads(int threads) { Most() = std::clamp(threads, 1, kMostThreads); }
 
@@ -46,7 +51,7 @@ void ForEachPartUntil(std::int64_t parts, absl::FunctionRef<bool()> stopped,
   for (std::int64_t i = 1; i < threads; ++i) {
     try {
       others.emplace_back([&take] {
-        LowerThreadPriority();  // below sessions that play
+        FirstCall().load()();
         take(false);
       });
     } catch (const std::system_error&) {  // the system has no more threads: those that run do the work

@@ -13,10 +13,13 @@ namespace phrenic {
 // Thread-safe.
 void SetCompileThreads(int threads);
 int CompileThreads();
+// Sets what each thread beside the caller does first: a server lowers its priority, so that a compile takes no time
+// from sessions that play. Initially nothing. Thread-safe.
+void SetCompileThreadStart(void (*start)());
 
-// Calls work(part) once for each part from 0 to parts - 1, in any order, on the caller and on threads of lower priority
-// (thread_priority.h) that end before it returns. A caller whose parts write to places of their own gets the same bits
-// from any number of threads. Thread-safe.
+// Calls work(part) once for each part from 0 to parts - 1, in any order, on the caller and on threads that end before
+// it returns. A caller whose parts write to places of their own gets the same bits from any number of threads.
+// Thread-safe.
 void ForEachPart(std::int64_t parts, absl::FunctionRef<void(std::int64_t)> work);
 // The same, but leaves out the parts that have not begun once stopped() is true, which the caller's thread alone asks,
 // before each of its parts.

@@ -14,7 +14,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/synchronization/mutex.h"
 #include "server/anatomy/anatomy.h"
-#include "server/schema/thread_priority.h"
+#include "server/jobs/thread_priority.h"
 
 namespace phrenic::session {
 namespace {
@@ -90,7 +90,7 @@ class Ahead {
     for (int i = 1; i < most; ++i) {
       try {
         workers_.emplace_back([this] {
-          LowerThreadPriority();
+          jobs::LowerThreadPriority();
           absl::MutexLock working(&mutex_);
           while (MakeNext()) {
           }
