@@ -17,7 +17,7 @@ std::atomic<int>& Most() {
 }
 
 std::atomic<void (*)()>& FirstCall() {
-  static std::atomic<void (*)()> start = [] {};
+  static std::atomic<void (*)()> start(+[] {});
   return start;
 }
 
