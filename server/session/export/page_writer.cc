@@ -56,6 +56,7 @@ absl::Status PageWriter::Begin(const Run& run) {
 
 void PageWriter::AddBodies() {
   std::vector<v1::GetGeometryResponse> all;
+  all.reserve(model_->bodies.size());
   for (int body = 0; body < static_cast<int>(model_->bodies.size()); ++body) {
     all.push_back(stream::MakeGeometry(*model_, layout_, body));
   }
