@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "client/files/whole_file.h"
+#include "server/mechanics/compile/presets.h"
 #include "server/schema/fields.h"
 #include "server/schema/schema.h"
 
@@ -74,6 +75,18 @@ absl::StatusOr<v1::Parameters> ReadSettings(const std::vector<std::string>& sett
     absl::Status status = schema::SetParameter(setting.substr(0, equals), setting.substr(equals + 1), &parameters);
     if (!status.ok()) return status;
   }
+  return parameters;
+}
+
+absl::StatusOr<v1::Parameters> ChosenParameters(const Model& model, const std::string& preset,
+                                                const std::vector<std::string>& settings) {
+  const absl::StatusOr<v1::Parameters> found = FindPreset(model.scene, preset);
+  if (!found.ok()) return found.status();
+  const absl::StatusOr<v1::Parameters> set = ReadSettings(settings);
+  if (!set.ok()) return set.status();
+  v1::Parameters parameters = model.parameters;
+  parameters.MergeFrom(*found);
+  parameters.MergeFrom(*set);
   return parameters;
 }
 

@@ -7,6 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "phrenic/v1/session.pb.h"
+#include "server/mechanics/model.h"
 
 namespace phrenic::client {
 
@@ -23,6 +24,11 @@ absl::StatusOr<google::protobuf::RepeatedPtrField<v1::Pull>> ReadPulls(const std
 
 // Parses parameters "name=value". INVALID_ARGUMENT names the parameter or quotes the text.
 absl::StatusOr<v1::Parameters> ReadSettings(const std::vector<std::string>& settings);
+
+// Returns the parameters of a model with a preset of its scene (empty: none), and on top of it the settings. The errors
+// of FindPreset and ReadSettings.
+absl::StatusOr<v1::Parameters> ChosenParameters(const Model& model, const std::string& preset,
+                                                const std::vector<std::string>& settings);
 
 }  // namespace phrenic::client
 

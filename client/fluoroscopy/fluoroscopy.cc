@@ -16,7 +16,6 @@
 #include "client/terminal/progress.h"
 #include "server/fluoroscopy/picture_file.h"
 #include "server/imaging/gzip.h"
-#include "server/mechanics/compile/presets.h"
 #include "server/mechanics/step/step.h"
 #include "server/service/calls/status.h"
 
@@ -67,19 +66,14 @@ absl::StatusOr<std::shared_ptr<const Model>> CompileScene(const Context& context
 
 // Runs the model from its initial state until the time.
 absl::StatusOr<State> StateAt(const Context& context, const FluoroscopyOptions& options, const Model& model) {
-  const absl::StatusOr<v1::Parameters> preset = FindPreset(model.scene, options.preset);
-  if (!preset.ok()) return preset.status();
-  const absl::StatusOr<v1::Parameters> settings = ReadSettings(options.settings);
-  if (!settings.ok()) return settings.status();
-  v1::Parameters parameters = model.parameters;
-  parameters.MergeFrom(*preset);
-  parameters.MergeFrom(*settings);
+  const absl::StatusOr<v1::Parameters> parameters = ChosenParameters(model, options.preset, options.settings);
+  if (!parameters.ok()) return parameters.status();
   State state = model.InitialState();
   Workspace work = model.MakeWorkspace();
   Progress progress("breathing", options.at);
   while (state.time < options.at - 1e-9) {
     if (context.interruption->happened()) return absl::CancelledError("the run was interrupted");
-    if (absl::Status status = Step(model, parameters, parameters.time_step(), state, work); !status.ok()) {
+    if (absl::Status status = Step(model, *parameters, parameters->time_step(), state, work); !status.ok()) {
       return absl::Status(status.code(), absl::StrFormat("at %.3f s: %s", state.time, std::string(status.message())));
     }
     progress.Update(state.time);

@@ -20,7 +20,6 @@
 #include "server/imaging/nifti.h"
 #include "server/imaging/nifti_header.h"
 #include "server/imaging/nifti_vectors.h"
-#include "server/mechanics/compile/presets.h"
 #include "server/mechanics/step/step.h"
 #include "server/mesh/units.h"
 #include "server/meshio/formats.h"
@@ -48,17 +47,6 @@ struct BreathRun {
   std::vector<State> phases;
 };
 
-absl::StatusOr<v1::Parameters> ParametersOf(const Model& model, const BreathOptions& options) {
-  const absl::StatusOr<v1::Parameters> preset = FindPreset(model.scene, options.preset);
-  if (!preset.ok()) return preset.status();
-  const absl::StatusOr<v1::Parameters> settings = ReadSettings(options.settings);
-  if (!settings.ok()) return settings.status();
-  v1::Parameters parameters = model.parameters;
-  parameters.MergeFrom(*preset);
-  parameters.MergeFrom(*settings);
-  return parameters;
-}
-
 absl::Status Breathe(const Context& context, const BreathOptions& options, BreathRun& run) {
   State state = run.model->InitialState();
   Workspace work = run.model->MakeWorkspace();
@@ -85,7 +73,7 @@ absl::StatusOr<BreathRun> RunBreath(const Context& context, const BreathOptions&
   auto model = CompileLocally(context, *source, options.scene.scene, options.data_dir);
   if (!model.ok()) return model.status();
   BreathRun run{*std::move(model), {}, {}};
-  absl::StatusOr<v1::Parameters> parameters = ParametersOf(*run.model, options);
+  absl::StatusOr<v1::Parameters> parameters = ChosenParameters(*run.model, options.preset, options.settings);
   if (!parameters.ok()) return parameters.status();
   run.parameters = *std::move(parameters);
   if (absl::Status status = Breathe(context, options, run); !status.ok()) return status;

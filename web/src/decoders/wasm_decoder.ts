@@ -43,7 +43,7 @@ class Instance {
     return new Uint8Array(this.exports.memory.buffer as ArrayBuffer, at, size);
   }
 
-  /** Throws the error whose text is at this address; 0 is none. */
+  /** Throws an error with the text at this address; returns if the address is 0. */
   check(at: number): void {
     if (at === 0) return;
     const text = new Uint8Array(this.exports.memory.buffer, at);
