@@ -60,11 +60,14 @@ test("AFilmOfABreathPlays", async () => {
   const { page } = viewer;
   await page.locator("#coloring-kind").selectOption("displacement", { force: true });
   await page.click("#share-open");
+  // Only a visible button takes the focus.
+  await page.locator("#film").waitFor();
   await page.focus("#film");
   const started = Date.now();
   const saving = page.waitForEvent("download", { timeout: 150_000 });
   await page.keyboard.press("Enter");
-  await page.getByText("Drawing the film").waitFor({ timeout: 60_000 });
+  const shown = () => page.textContent("#film-progress");
+  await expect.poll(shown, { timeout: 60_000 }).toContain("Drawing the film");
   expect(await page.evaluate(() => document.activeElement?.textContent)).toBe("Stop");
   expect(await viewer.violations()).toEqual([]);
   const file = await saving;

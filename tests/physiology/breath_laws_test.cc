@@ -23,12 +23,19 @@ void ReverseRows(Points& grid) {
   }
 }
 
-std::shared_ptr<const Model> CompileThorax(double middle_mm, bool mirrored) {
+// True if the part is of the right lung alone. It is seen and moves nothing, so that it may stay in the mirror image.
+bool IsOfRightLungAlone(const v1::Anatomy& part) {
+  return part.number() == 2 &&
+         (part.structure() == v1::STRUCTURE_FISSURE || part.structure() == v1::STRUCTURE_LUNG_LOBE);
+}
+
+std::shared_ptr<const Model> CompileThorax(double middle_mm, bool is_image) {
   std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/thorax.textproto");
   std::stringstream text;
   text << file.rdbuf();
   return *Compile(*schema::ParseScene("thorax", text.str()), [=](const v1::Body& body) -> absl::StatusOr<Mesh> {
     v1::Anatomy part = body.anatomy();
+    const bool mirrored = is_image && !IsOfRightLungAlone(part);
     if (mirrored && part.side() == v1::SIDE_LEFT) {
       part.set_side(v1::SIDE_RIGHT);
     } else if (mirrored && part.side() == v1::SIDE_RIGHT) {
