@@ -26,7 +26,28 @@ constexpr std::int64_t kBytesPerNumber = 16;  // of text
 constexpr std::int64_t kBytesPerShape = 60;   // a triangle or an edge, in text or a .vtp
 constexpr std::size_t kLongestStem = 100;
 
-absl::StatusOr<std::vector<int>> Bodies(const Model& model, const v1::CreateExportRequest& request) {
+// True for what computes the motion of what is seen, and is not seen itself.
+bool IsHiddenMechanics(const Model& model, const BodyModel& body) {
+  if (body.first_vertex < 0 && body.anatomy.structure() != v1::STRUCTURE_INNER_CAGE) return false;
+  for (const v1::Layer& layer : model.scene.layers()) {
+    if (layer.name() == body.layer) return layer.has_opacity() && layer.opacity() == 0;
+  }
+  return false;
+}
+
+// Returns the bodies of a file that has no request for some: a page has what is seen, or all if nothing is.
+std::vector<int> DefaultBodies(const Model& model, const record::Format& format) {
+  if (!format.page) return TissueBodies(model);
+  std::vector<int> all, seen;
+  for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
+    all.push_back(i);
+    if (!IsHiddenMechanics(model, model.bodies[static_cast<std::size_t>(i)])) seen.push_back(i);
+  }
+  return seen.empty() ? all : seen;
+}
+
+absl::StatusOr<std::vector<int>> Bodies(const Model& model, const v1::CreateExportRequest& request,
+                                        const record::Format& format) {
   std::vector<bool> chosen(model.bodies.size(), false);
   std::vector<std::string> names;
   for (const BodyModel& body : model.bodies) names.push_back(body.name);
@@ -36,7 +57,7 @@ absl::StatusOr<std::vector<int>> Bodies(const Model& model, const v1::CreateExpo
     for (const int body : *named) chosen[static_cast<std::size_t>(body)] = true;
   }
   if (request.bodies().empty()) {
-    for (const int body : TissueBodies(model)) chosen[static_cast<std::size_t>(body)] = true;
+    for (const int body : DefaultBodies(model, format)) chosen[static_cast<std::size_t>(body)] = true;
   }
   std::vector<int> bodies;
   for (int i = 0; i < static_cast<int>(chosen.size()); ++i) {
@@ -49,23 +70,10 @@ absl::StatusOr<std::vector<int>> Bodies(const Model& model, const v1::CreateExpo
   return bodies;
 }
 
-absl::Status ChooseAllBodies(const v1::CreateExportRequest& request, const Model& model, ExportPlan& plan) {
-  if (!request.bodies().empty()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("bodies: ", plan.format.name, " has every body of the scene; leave the field out"));
-  }
-  for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body) {
-    plan.bodies.push_back(body);
-    plan.vertices += model.bodies[body].mesh.vertices.cols();
-  }
-  return absl::OkStatus();
-}
-
 // Chooses bodies, or columns of numbers, whichever the format holds.
 absl::Status ChooseContent(const v1::CreateExportRequest& request, const Model& model, ExportPlan& plan) {
-  if (plan.format.page) return ChooseAllBodies(request, model, plan);
   if (!plan.format.numbers_only) {
-    auto bodies = Bodies(model, request);
+    auto bodies = Bodies(model, request, plan.format);
     if (!bodies.ok()) return bodies.status();
     plan.bodies = *std::move(bodies);
     for (const int body : plan.bodies) plan.vertices += model.bodies[body].mesh.vertices.cols();

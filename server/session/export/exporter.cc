@@ -151,7 +151,7 @@ absl::StatusOr<std::unique_ptr<MotionWriter>> MakeWriter(const ExportPlan& plan,
   if (!plan.format.page) return std::make_unique<BodyWriter>(plan, sink);
   absl::StatusOr<std::string> page = ReadPageTemplate(plan.page_template);
   if (!page.ok()) return page.status();
-  return std::make_unique<PageWriter>(model, *std::move(page), sink);
+  return std::make_unique<PageWriter>(model, plan.bodies, *std::move(page), sink);
 }
 
 }  // namespace

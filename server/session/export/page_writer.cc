@@ -1,6 +1,5 @@
 #include "server/session/export/page_writer.h"
 
-#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <utility>
@@ -16,12 +15,6 @@ namespace {
 constexpr std::string_view kMotionPlace = "__PHRENIC_MOTION__";
 constexpr std::size_t kMostFrameBytes = std::size_t{64} << 20;
 
-// True for what computes the motion of what is seen, and is not seen itself.
-bool IsHiddenMechanics(const BodyModel& body, const v1::GetGeometryResponse& geometry) {
-  const bool mechanics = body.first_vertex >= 0 || body.anatomy.structure() == v1::STRUCTURE_INNER_CAGE;
-  return mechanics && geometry.opacity() == 0;
-}
-
 }  // namespace
 
 absl::StatusOr<std::string> ReadPageTemplate(const std::string& path) {
@@ -34,12 +27,15 @@ absl::StatusOr<std::string> ReadPageTemplate(const std::string& path) {
       absl::StrCat("format: html needs the built viewer's ", path, ": build it (npm run build in web/)"));
 }
 
-PageWriter::PageWriter(std::shared_ptr<const Model> model, std::string page, record::Sink sink)
+PageWriter::PageWriter(std::shared_ptr<const Model> model, const std::vector<int>& bodies, std::string page,
+                       record::Sink sink)
     : model_(std::move(model)),
       layout_(*model_),
       encoder_(model_, layout_),
       page_(std::move(page)),
-      sink_(std::move(sink)) {}
+      sink_(std::move(sink)),
+      bodies_(bodies),
+      numbers_(model_->bodies.size(), -1) {}
 
 absl::Status PageWriter::Begin(const Run& run) {
   motion_.set_scene(model_->scene.name());
@@ -55,27 +51,19 @@ absl::Status PageWriter::Begin(const Run& run) {
 }
 
 void PageWriter::AddBodies() {
-  std::vector<v1::GetGeometryResponse> all;
-  all.reserve(model_->bodies.size());
-  for (int body = 0; body < static_cast<int>(model_->bodies.size()); ++body) {
-    all.push_back(stream::MakeGeometry(*model_, layout_, body));
-  }
-  const bool shows_any = std::any_of(all.begin(), all.end(), [](const auto& each) { return each.opacity() > 0; });
+  motion_.mutable_bodies()->Reserve(static_cast<int>(bodies_.size()));
   int first_vertex = 0;
-  for (v1::GetGeometryResponse& geometry : all) {
-    const int body = geometry.body_index();
-    const BodyModel& model = model_->bodies[static_cast<std::size_t>(body)];
-    numbers_.push_back(motion_.bodies_size());
-    if (shows_any && IsHiddenMechanics(model, geometry)) continue;
-    geometry.set_body_index(motion_.bodies_size());
-    if (geometry.placement() == v1::PLACEMENT_STREAMED) {
-      geometry.set_first_vertex(first_vertex);
-      first_vertex += static_cast<int>(model.mesh.vertices.cols());
-      streamed_.push_back(body);
-    }
-    *motion_.add_bodies() = std::move(geometry);
+  for (const int body : bodies_) {
+    v1::GetGeometryResponse& geometry = *motion_.add_bodies();
+    geometry = stream::MakeGeometry(*model_, layout_, body);
+    geometry.set_body_index(motion_.bodies_size() - 1);
+    geometry.set_body_count(static_cast<int>(bodies_.size()));
+    numbers_[static_cast<std::size_t>(body)] = geometry.body_index();
+    if (geometry.placement() != v1::PLACEMENT_STREAMED) continue;
+    geometry.set_first_vertex(first_vertex);
+    first_vertex += static_cast<int>(model_->bodies[static_cast<std::size_t>(body)].mesh.vertices.cols());
+    streamed_.push_back(body);
   }
-  for (v1::GetGeometryResponse& geometry : *motion_.mutable_bodies()) geometry.set_body_count(motion_.bodies_size());
 }
 
 absl::Status PageWriter::AddFrame(const Run& run) {

@@ -23,12 +23,12 @@ absl::StatusOr<std::string> ReadPageTemplate(const std::string& path);
 
 // Holds the frames in memory, encoded as viewers get them (CODEC_PREDICTED) within 0.1, 0.2, 0.5 and 1 mm, and writes
 // the page at the end with the finest that gives at most kPageBytes; with those of 1 mm if none does. The page contains
-// a v1::OfflineMotion, without mechanics that the scene hides; equal runs give equal bytes. RESOURCE_EXHAUSTED if the
+// a v1::OfflineMotion; equal runs give equal bytes. RESOURCE_EXHAUSTED if the
 // frames within 1 mm have more than 64 MiB; INTERNAL if a number is not finite.
 class PageWriter final : public MotionWriter {
  public:
-  // `page` is the template.
-  PageWriter(std::shared_ptr<const Model> model, std::string page, record::Sink sink);
+  // `bodies` are numbers in the model, ascending; the page numbers them from 0. `page` is the template.
+  PageWriter(std::shared_ptr<const Model> model, const std::vector<int>& bodies, std::string page, record::Sink sink);
 
   absl::Status Begin(const Run& run) override;
   absl::Status AddFrame(const Run& run) override;
@@ -49,9 +49,10 @@ class PageWriter final : public MotionWriter {
   stream::Encoder encoder_;
   const std::string page_;
   const record::Sink sink_;
-  v1::OfflineMotion motion_;   // without frames
-  std::vector<int> streamed_;  // bodies of the page with positions in frames, by number in the model
-  std::vector<int> numbers_;   // in the page, by number in the model
+  v1::OfflineMotion motion_;                        // without frames
+  const std::vector<int> bodies_;                   // of the page, by number in the model
+  std::vector<int> streamed_;                       // those with positions in frames
+  std::vector<int> numbers_;                        // in the page, by number in the model; -1: not in the page
   std::array<Frames, kBoundLevels.size()> frames_;  // by error bound
   std::size_t coarsest_bytes_ = 0;                  // of the frames with the largest bound
 };

@@ -75,7 +75,11 @@ const writer: PictureWriter = {
 function maker(): { film: FilmMaker; exports: FakeExports } {
   const exports = new FakeExports();
   const film = new FilmMaker(
-    recordedMotion(exports as unknown as Exports, async () => decoderModule()),
+    recordedMotion(
+      exports as unknown as Exports,
+      () => ["sheet", "rib"],
+      async () => decoderModule(),
+    ),
     stage,
     async () => writer,
     () => supported,
@@ -99,7 +103,7 @@ describe("a film", () => {
   test("HasTheSimulationsFramesAtAFixedRate", async () => {
     const { film, exports } = maker();
     await film.start();
-    expect(exports.choices).toMatchObject({ format: "html", seconds: 0 });
+    expect(exports.choices).toMatchObject({ format: "html", seconds: 0, bodies: ["sheet", "rib"] });
     expect(film.progress.value).toMatchObject({ kind: "ready", file: "thorax.webm", size: 4 });
     expect(drawn.length).toBe(25);
     drawn.forEach(({ time, arrays }, i) => {

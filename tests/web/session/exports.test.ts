@@ -99,15 +99,16 @@ test("AnExportIsRecordedDownloadedAndDeleted", async () => {
   }
 });
 
-test("APageHasOneBreathOfEveryBody", async () => {
+test("APageHasOneBreathOfTheChosenBodies", async () => {
   const exports = new Exports(api, "class");
   await exports.loadFormats();
   document.body.replaceChildren(exportPanel(exports, new Signal<Body[]>([])));
   exports.choose({ format: "html", seconds: 9, bodies: ["lung"] });
   const rowOf = (id: string) => byId(id).closest<HTMLElement>(".labelled-row")!;
-  expect([rowOf("export-seconds").hidden, rowOf("export-body").hidden]).toEqual([true, true]);
+  expect([rowOf("export-seconds").hidden, rowOf("export-body").hidden]).toEqual([true, false]);
+  expect(byId<HTMLSelectElement>("export-body").options[0].textContent).toBe("what the scene shows");
   await exports.start();
-  expect(asked[0]).toMatchObject({ format: "html", seconds: 0, bodies: [] });
+  expect(asked[0]).toMatchObject({ format: "html", seconds: 0, bodies: ["lung"] });
 });
 
 test("ABreathIsTakenHomeByOneButton", async () => {

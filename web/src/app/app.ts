@@ -354,8 +354,10 @@ export class App {
       if (picture !== null) download(`${sessionId}.png`, picture);
     };
     const stage = filmStage(viewer, this.tools.coloring, (frame) => (this.filmed = frame));
-    const film = new FilmMaker(recordedMotion(new Exports(this.api, sessionId)), stage, openWriter);
-    const animation = FilmMaker.ofAnimations(recordedMotion(new Exports(this.api, sessionId)), stage, openAnimation);
+    const names = () => this.bodies.value.map(({ name }) => name);
+    const breath = () => recordedMotion(new Exports(this.api, sessionId), names);
+    const film = new FilmMaker(breath(), stage, openWriter);
+    const animation = FilmMaker.ofAnimations(breath(), stage, openAnimation);
     const translated = new Exports(this.api, sessionId, undefined, inPageLanguage);
     const rows = [takeHomeRow(translated), filmRow(film), animationRow(animation)];
     const measured = () => this.tools.measuring.measurements.kept();

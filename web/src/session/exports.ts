@@ -117,7 +117,7 @@ export class Exports {
       sessionId: this.sessionId,
       // A page plays one breath.
       seconds: format?.instant || format?.page ? 0 : seconds,
-      bodies: format?.numbersOnly || format?.page ? [] : bodies,
+      bodies: format?.numbersOnly ? [] : bodies,
     };
   }
 

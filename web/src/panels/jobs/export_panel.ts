@@ -16,9 +16,10 @@ const valueNames: [ExportValues, string][] = [
 /** Selects format, duration and bodies, and records the motion into a file. */
 export function exportPanel(exports: Exports, bodies: Signal<Body[]>): HTMLElement {
   const start = make("button", { type: "button", id: "export", onclick: () => void exports.start() }, t("Export…"));
+  const usual = make("option", { value: "" });
   const rows = [
     formatRow(exports),
-    bodyRow(exports, bodies),
+    bodyRow(exports, bodies, usual),
     numberRow("export-seconds", t("Duration [s]"), "8", (value) => exports.choose({ seconds: value ?? 8 })),
     numberRow("export-fps", t("Frames per second"), t("default"), (value) =>
       exports.choose({ framesPerSecond: value }),
@@ -32,7 +33,8 @@ export function exportPanel(exports: Exports, bodies: Signal<Body[]>): HTMLEleme
     hint.textContent = t(format?.description ?? "");
     rate!.hidden = format?.instant ?? false;
     length!.hidden = (format?.instant ?? false) || (format?.page ?? false);
-    bodyChoice!.hidden = (format?.numbersOnly ?? false) || (format?.page ?? false);
+    bodyChoice!.hidden = format?.numbersOnly ?? false;
+    usual.textContent = t(format?.page ? "what the scene shows" : "deformable bodies");
     values!.hidden = (format?.values.length ?? 0) < 2;
   });
   const panel = section(t("Export the motion"), false, ...rows, hint, start, exportProgress(exports, start, "export"));
@@ -54,17 +56,14 @@ function formatRow(exports: Exports): HTMLElement {
   return labelledRow("export-format", t("Format"), list);
 }
 
-function bodyRow(exports: Exports, bodies: Signal<Body[]>): HTMLElement {
+/** `usual` is the choice of the format's default. */
+function bodyRow(exports: Exports, bodies: Signal<Body[]>, usual: HTMLElement): HTMLElement {
   const list = make("select", { id: "export-body" });
   const all = () => bodies.value.map(({ name }) => name);
   list.onchange = () => exports.choose({ bodies: list.value === "" ? [] : list.value === "*" ? all() : [list.value] });
   bodies.subscribe((present) => {
     const names = present.map(({ name }) => make("option", { value: name }, name));
-    list.replaceChildren(
-      make("option", { value: "" }, t("deformable bodies")),
-      make("option", { value: "*" }, t("all bodies")),
-      ...names,
-    );
+    list.replaceChildren(usual, make("option", { value: "*" }, t("all bodies")), ...names);
     exports.choose({ bodies: [] });
   });
   return labelledRow("export-body", t("Bodies"), list);
