@@ -1,7 +1,7 @@
 import axe from "axe-core";
 import { existsSync, mkdirSync } from "node:fs";
 import { join } from "node:path";
-import { type Browser, chromium, type ConsoleMessage, type Page } from "playwright-core";
+import { type Browser, type BrowserContext, chromium, type ConsoleMessage, type Page } from "playwright-core";
 import type { TestHook } from "../../web/src/app/test_hook";
 import { outFolder, Server } from "./server";
 
@@ -53,6 +53,18 @@ export async function endAll(browser: Browser | undefined, server: Server | unde
   await server?.end();
 }
 
+/**
+ * Draws the pages of `context` at most eight times a second, whatever the machine could: tests look at what is drawn, and
+ * without a graphics card each drawing takes a core for 50 ms, which the simulation and the other browsers need.
+ */
+async function slowDisplay(context: BrowserContext): Promise<void> {
+  await context.addInitScript(() => {
+    const native = window.requestAnimationFrame.bind(window);
+    window.requestAnimationFrame = (draw) => window.setTimeout(() => native(draw), 110);
+    window.cancelAnimationFrame = (id) => clearTimeout(id);
+  });
+}
+
 /** A page with the viewer, and the console errors and requests that it causes. */
 export class ViewerPage {
   readonly consoleErrors: string[] = [];
@@ -72,6 +84,7 @@ export class ViewerPage {
     colorScheme: "dark" | "light" = "dark",
   ): Promise<ViewerPage> {
     const context = await browser.newContext({ viewport: size, colorScheme });
+    await slowDisplay(context);
     const viewer = new ViewerPage(await context.newPage());
     await viewer.page.goto(url);
     await viewer.waitForPicture();

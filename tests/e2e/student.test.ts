@@ -18,9 +18,6 @@ const student = () => `${server.url}?session=thorax&view=student`;
 
 const sizes = [[1440, 900], [1000, 700], [768, 1024], [600, 360], [320, 640]]; // prettier-ignore
 
-/** A slow motion, of which a browser without a GPU draws enough frames. */
-const slowly = (viewer: ViewerPage) => viewer.page.selectOption("#speed", "0.25");
-
 /** Pictures of the page at several widths; nothing is cut off at the right. */
 async function picturesOf(page: ViewerPage["page"], name: string, of = sizes): Promise<void> {
   for (const [width, height] of of) {
@@ -38,7 +35,6 @@ async function picturesOf(page: ViewerPage["page"], name: string, of = sizes): P
 test("AClassChoosesABreathAndMovesASlider", async () => {
   const viewer = await ViewerPage.open(browser, student(), { width: 1440, height: 900 });
   const { page } = viewer;
-  await slowly(viewer);
   const stage = (await page.locator("#stage").boundingBox())!;
   expect(stage.width / 1440).toBeCloseTo(0.7, 1);
   await page.setViewportSize({ width: 900, height: 620 });
@@ -87,7 +83,6 @@ test("TheViewIsInTheAddressAndRemembered", async () => {
 test("OneKeyComparesWithHealthAndEndsTheCopy", { timeout: 240_000 }, async () => {
   const viewer = await ViewerPage.open(browser, student());
   const { page } = viewer;
-  await slowly(viewer);
   await page.getByRole("button", { name: "Ill", exact: true }).click();
   await page.getByRole("button", { name: "Right palsy" }).click();
   await page.focus("#view");

@@ -15,6 +15,23 @@ const read = (name: string) => fromJsonString(LessonSchema, readFileSync(join(fo
 
 const layersOf = (scene: string) => [...new Set([...scene.matchAll(/\blayer: "(.*?)"/g)].map(([, layer]) => layer))];
 
+/** What the placeholders in the names of a scene's bodies may stand for. */
+const placeholders: [string, string[]][] = [
+  ["{side}", ["right", "left"]],
+  ["{number}", Array.from({ length: 12 }, (_, i) => String(i + 1))],
+  ["{vertebra}", [...Array.from({ length: 12 }, (_, i) => `t${i + 1}`), "l1", "l2", "l3"]],
+];
+
+/** Returns the names that the bodies of a scene have, or could have. */
+function bodiesOf(scene: string): string[] {
+  const written = [...scene.matchAll(/^bodies \{\s+name: "(.*?)"/gm)].map(([, name]) => name);
+  return placeholders.reduce(
+    (names, [word, values]) =>
+      names.flatMap((name) => (name.includes(word) ? values.map((value) => name.replace(word, value)) : [name])),
+    written,
+  );
+}
+
 /** SI unit and value of each unit of a caption. */
 const units: Record<string, [si: string, factor: number]> = {
   mm: ["m", 1e-3],
@@ -124,7 +141,9 @@ describe.each(names)("the lesson %s", (name) => {
   });
 
   test("HasTheNamesOfItsScene", () => {
-    expect(() => checkLesson(lesson, sceneNames(lesson.scene, layersOf(scene), predictable))).not.toThrow();
+    expect(() =>
+      checkLesson(lesson, sceneNames(lesson.scene, layersOf(scene), predictable, bodiesOf(scene))),
+    ).not.toThrow();
   });
 
   test("HasARightAnswerToEveryQuestion", () => {
