@@ -13,7 +13,7 @@ namespace {
 constexpr double kRidge = 1e-9;  // of the shapes' mean square: shapes may be equal on selected bodies
 
 // What follows the coefficients.
-enum class Rest : std::uint32_t { kNothing = 0, kAsItIs = 1, kForetold = 2 };
+enum class Rest : std::uint32_t { kNothing = 0, kAsItIs = 1, kPredicted = 2 };
 
 // Returns the steps from `sum` to `positions`, three per place, 0 for vertices within `max_error`. Empty if all are;
 // nothing if one exceeds the range.
@@ -82,15 +82,15 @@ absl::StatusOr<std::string> BasisCodec::Encode(const Floats& positions, double m
   const Parts parts = FindCoefficients(positions);
   const auto steps = StepsFrom(Sum(parts), positions, max_error, *step, predictor_.order());
   if (!steps.has_value()) return absl::OutOfRangeError("a vertex is too far from rest");
-  const Steps foretold = predictor_.Residuals(*steps);
-  const bool fewer = Zeros(foretold) > Zeros(*steps);
-  const Rest rest = steps->empty() ? Rest::kNothing : fewer ? Rest::kForetold : Rest::kAsItIs;
+  const Steps residuals = predictor_.Residuals(*steps);
+  const bool fewer = Zeros(residuals) > Zeros(*steps);
+  const Rest rest = steps->empty() ? Rest::kNothing : fewer ? Rest::kPredicted : Rest::kAsItIs;
   std::string bytes;
   Append(*step, bytes);
   Append(static_cast<std::uint32_t>(parts.size()), bytes);
   Append(static_cast<std::uint32_t>(rest), bytes);
   for (const float part : parts) Append(part, bytes);
-  if (rest != Rest::kNothing) AppendResiduals(fewer ? foretold : *steps, bytes);
+  if (rest != Rest::kNothing) AppendResiduals(fewer ? residuals : *steps, bytes);
   return bytes;
 }
 

@@ -51,9 +51,9 @@ std::array<std::int64_t, 3> NeighbourPredictor::Predict(const Steps& steps, int 
 Steps NeighbourPredictor::Residuals(const Steps& steps) const {
   Steps residuals(steps.size());
   for (int place = 0; 3 * static_cast<std::size_t>(place) < steps.size(); ++place) {
-    const auto foretold = Predict(steps, place);
+    const auto predicted = Predict(steps, place);
     for (int axis = 0; axis < 3; ++axis) {
-      residuals[3 * place + axis] = static_cast<std::int32_t>(steps[3 * place + axis] - foretold[axis]);
+      residuals[3 * place + axis] = static_cast<std::int32_t>(steps[3 * place + axis] - predicted[axis]);
     }
   }
   return residuals;
