@@ -12,9 +12,9 @@
 namespace phrenic::client {
 
 struct SceneOptions {
-  std::string scene;                  // a name of the catalogue, or a path: contains a slash or ends in .textproto
-  double resolution_mm = 0;           // edge length of generated bodies [mm]; 0: the scene's own
-  std::vector<std::string> physique;  // "name=value" of message Physique, in place of the scene's
+  std::string scene;                       // a name of the catalogue, or a path: contains a slash or ends in .textproto
+  double resolution_mm = 0;                // edge length of generated bodies [mm]; 0: the scene's own
+  std::vector<std::string> physique = {};  // "name=value" of message Physique, in place of the scene's
 };
 
 // Returns the scene's name, or the scene read from its file. Errors name the file and the line.
