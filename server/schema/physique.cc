@@ -17,7 +17,7 @@ constexpr double kWomanChest = 0.95;                                     // widt
 constexpr double kWomanSlope = 3;                                        // [degrees]
 constexpr double kSlopeAYear = -0.1, kKyphosisAYear = 0.3;               // [degrees]
 constexpr double kBarrelDepth = 0.22;                                    // more than 1
-constexpr double kBarrelSlope = -10;                                     // [degrees]
+constexpr double kBarrelSlope = -6;                                      // [degrees]
 constexpr double kBarrelDomes = -0.02;                                   // [m]
 constexpr double kYoungest = 24, kOldest = 75;                           // in whom compliance was measured [years]
 constexpr double kYoungGroup = 31.5, kOldGroup = 65;                     // middles of the two groups [years]
