@@ -194,7 +194,8 @@ absl::StatusOr<PhantomBody> FindPhantomBody(std::string_view name) {
 
 PhantomBody PhantomBodyOf(const v1::Physique& physique) {
   PhantomBody body{.name = "person"};
-  body.physique = std::make_shared<const anatomy::PhysiqueMap>(physique);
+  const auto map = std::make_shared<const anatomy::PhysiqueMap>(physique);
+  if (!map->IsIdentity()) body.physique = map;
   return body;
 }
 

@@ -40,7 +40,7 @@ const clip = { x: 187, y: 88, width: 386, height: 560 };
 export async function contactSheet(browser: Browser, server: Server, path: string): Promise<void> {
   const tiles: string[] = [];
   for (const [i, column] of columns.entries()) tiles.push(await columnOf(browser, server, column, `session-${i}`));
-  await writeSheet(browser, tiles, columns.length, path);
+  await writeSheet(browser, tiles, columns.length, path, 82);
 }
 
 /** A body of client/examples/bodies.txt: a title, and numbers "name=value". */
@@ -78,7 +78,7 @@ export async function bodySheet(browser: Browser, server: Server, path: string):
     const images = pictures.map((picture) => `<div class="tile">${image(picture, width)}</div>`);
     tiles.push(`<figure><figcaption>${body.title}</figcaption>${images.join("")}</figure>`);
   }
-  await writeSheet(browser, tiles, bodies.length / 2, path);
+  await writeSheet(browser, tiles, bodies.length / 2, path, 75);
 }
 
 const tileWidth = 190;
@@ -107,14 +107,14 @@ function image(picture: Buffer, width: number): string {
   return `<img style="width: ${width}px" src="data:image/png;base64,${picture.toString("base64")}">`;
 }
 
-async function writeSheet(browser: Browser, tiles: string[], across: number, path: string): Promise<void> {
+async function writeSheet(browser: Browser, tiles: string[], across: number, path: string, quality: number) {
   const page = await browser.newPage({ viewport: { width: tileWidth * across, height: 600 } });
   const style = `body { margin: 0; background: #171c22; color: #e8eaed; font: 14px sans-serif; display: flex; flex-wrap: wrap }
     figure { margin: 0; width: ${tileWidth}px } figcaption { padding: 8px 0 4px; text-align: center }
-    .tile { height: 236px; overflow: hidden; display: flex; align-items: center; justify-content: center }
+    .tile { height: 285px; overflow: hidden; display: flex; align-items: center; justify-content: center }
     img { display: block; width: ${tileWidth}px }`;
   await page.setContent(`<style>${style}</style>${tiles.join("")}`);
-  await page.locator("body").screenshot({ path, type: "jpeg", quality: 82 });
+  await page.locator("body").screenshot({ path, type: "jpeg", quality });
   await page.close();
 }
 
