@@ -28,13 +28,18 @@ std::shared_ptr<const Model> CompileBody(const v1::Physique& physique) {
   });
 }
 
-// A quiet breath of one body.
-class TenBodiesBreathe : public testing::TestWithParam<const char*> {};
+// A body, and the range of its right dome's descent [mm]: that of health, and with COPD 40 to 80 % of health's 14.3 mm.
+struct BreathingBody {
+  const char* title;
+  double least, most;
+};
+
+class TenBodiesBreathe : public testing::TestWithParam<BreathingBody> {};
 
 TEST_P(TenBodiesBreathe, AQuietBreathWithoutFlaws) {
   const std::vector<NamedBody> bodies = TenBodies();
-  const auto body = std::ranges::find_if(bodies, [](const NamedBody& each) { return each.title == GetParam(); });
-  ASSERT_NE(body, bodies.end()) << GetParam();
+  const auto body = std::ranges::find_if(bodies, [](const NamedBody& each) { return each.title == GetParam().title; });
+  ASSERT_TRUE(body != bodies.end()) << GetParam().title;
   const auto model = CompileBody(body->physique);
   const auto subject = physiology::Subject::Of(*model);
   ASSERT_TRUE(subject.ok()) << subject.status();
@@ -47,20 +52,22 @@ TEST_P(TenBodiesBreathe, AQuietBreathWithoutFlaws) {
   const auto [least, greatest] = std::minmax_element(volume.begin(), volume.end());
   const double right = DomeDescent(**subject, breath->peak, v1::SIDE_RIGHT),
                left = DomeDescent(**subject, breath->peak, v1::SIDE_LEFT), tidal = *greatest - *least;
-  std::printf("%s: tidal volume %.2f l; descent %.1f and %.1f mm; %g crossings, %g layers, %g ribs\n", GetParam(),
+  std::printf("%s: tidal volume %.2f l; descent %.1f and %.1f mm; %g crossings, %g layers, %g ribs\n", GetParam().title,
               1e3 * tidal, right, left, breath->flaws[physiology::kSelfCrossings],
               breath->flaws[physiology::kCrossedLayers], breath->flaws[physiology::kPiercingRibs]);
   EXPECT_GT(tidal, 0.4e-3);
   EXPECT_LT(tidal, 0.7e-3);
-  EXPECT_GT(right, 10);
-  EXPECT_LT(right, 25);
+  EXPECT_GT(right, GetParam().least);
+  EXPECT_LT(right, GetParam().most);
   EXPECT_EQ(breath->flaws[physiology::kSelfCrossings], 0);
   EXPECT_EQ(breath->flaws[physiology::kCrossedLayers], 0);
   EXPECT_EQ(breath->flaws[physiology::kPiercingRibs], 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Bodies, TenBodiesBreathe,
-                         testing::Values("Woman, 30 years, 1.62 m", "Barrel chest", "Kyphosis, 65 degrees"));
+                         testing::Values(BreathingBody{"Woman, 30 years, 1.62 m", 10, 25},
+                                         BreathingBody{"Barrel chest", 5.7, 11.4},
+                                         BreathingBody{"Kyphosis, 65 degrees", 10, 25}));
 
 }  // namespace
 }  // namespace phrenic
