@@ -44,6 +44,7 @@ constexpr KindRow kKindRows[] = {
     {"SETTING", Kind::kSetting, "", ""},
     {"SHELL", Kind::kChoice, "", "bash zsh fish"},
     {"--set", Kind::kSetting, "NAME=VALUE", ""},
+    {"--physique", Kind::kPhysique, "NAME=VALUE", ""},
     {"--preset", Kind::kPreset, "PRESET", ""},
     {"phantom --body", Kind::kChoice, "BODY", "adult small tall flat"},
     {"fluoroscopy --view", Kind::kChoice, "VIEW", "pa ap left-lateral lao-30 rao-30"},
@@ -121,6 +122,9 @@ void ApplyTo(const CLI::App& command, CLI::Option& option) {
   if (!kind.placeholder.empty()) option.type_name(kind.placeholder);
   if (kind.kind == Kind::kSetting) {
     option.check(ParsedBy([](const std::string& text) { return ReadSettings({text}).status(); }), "");
+  }
+  if (kind.kind == Kind::kPhysique) {
+    option.check(ParsedBy([](const std::string& text) { return ReadPhysique({text}).status(); }), "");
   }
   if (kind.kind != Kind::kChoice) return;
   const auto check = [choices = kind.choices](const std::string& value) {

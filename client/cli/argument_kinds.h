@@ -11,7 +11,7 @@
 
 namespace phrenic::client {
 
-enum class Kind { kOther, kChoice, kFile, kFolder, kScene, kSession, kExport, kStudy, kPreset, kSetting };
+enum class Kind { kOther, kChoice, kFile, kFolder, kScene, kSession, kExport, kStudy, kPreset, kSetting, kPhysique };
 
 struct ArgumentKind {
   Kind kind = Kind::kOther;

@@ -84,6 +84,7 @@ Candidates ValuesOf(const CLI::App& command, const CLI::Option& option, const Wo
     case Kind::kScene:
       return {lookup(kind.kind, words), Directive::kFiles};
     case Kind::kSetting:
+    case Kind::kPhysique:
       return {lookup(kind.kind, words), Directive::kNoSpace};
     case Kind::kChoice: {
       Candidates choices;

@@ -75,6 +75,17 @@ std::string Parameters() {
   return text;
 }
 
+std::string Physique() {
+  std::string text = Heading("Numbers of a body, set by --physique NAME=VALUE");
+  for (const ParameterRow& row : PhysiqueRows()) text += Pair(row.name, MeaningOf(row));
+  return text;
+}
+
+bool HasKind(const CLI::App& command, Kind kind) {
+  return std::ranges::any_of(command.get_options(),
+                             [&](const CLI::Option* option) { return KindOf(command, *option).kind == kind; });
+}
+
 std::string CommandsOf(const CLI::App& command) {
   const auto below = command.get_subcommands([](const CLI::App*) { return true; });
   std::string text = below.empty() ? "" : Heading("Commands");
@@ -113,6 +124,7 @@ std::string CommandHelp(const CLI::App& command, CommandTable commands) {
   const Command* row = FindCommand(commands, PathOf(command));
   if (row != nullptr && !row->examples().empty()) text += Heading("Examples") + Examples(row->examples());
   text += CommandsOf(command) + List("Arguments", PositionalsOf(command)) + List("Options", OptionsOf(command));
+  if (TakesPhysique(command)) text += Physique();
   if (SetsParameters(command)) text += Heading("Parameters, set by NAME=VALUE") + Parameters();
   text += command.get_footer();
   return text + "\n" +
@@ -177,11 +189,9 @@ std::string MeaningOf(const ParameterRow& parameter) {
                       parameter.default_value, ")");
 }
 
-bool SetsParameters(const CLI::App& command) {
-  return std::ranges::any_of(command.get_options(), [&](const CLI::Option* option) {
-    return KindOf(command, *option).kind == Kind::kSetting;
-  });
-}
+bool SetsParameters(const CLI::App& command) { return HasKind(command, Kind::kSetting); }
+
+bool TakesPhysique(const CLI::App& command) { return HasKind(command, Kind::kPhysique); }
 
 std::string HelpFormatter::make_help(const CLI::App* command, std::string /*name*/, CLI::AppFormatMode /*mode*/) const {
   return command->get_parent() == nullptr ? RootHelp(*command, commands_) : CommandHelp(*command, commands_);

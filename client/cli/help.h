@@ -27,6 +27,8 @@ std::string ShortHelp(const CLI::App& root);
 std::string MeaningOf(const ParameterRow& parameter);
 // True if one of the command's arguments sets parameters.
 bool SetsParameters(const CLI::App& command);
+// True if an option of the command takes numbers of a body.
+bool TakesPhysique(const CLI::App& command);
 
 // Returns "phrenic run SCENE [options]".
 std::string UsageOf(const CLI::App& command);

@@ -88,9 +88,8 @@ std::vector<Candidate> ChoicesOf(const FieldDescriptor& field) {
 }
 
 // Returns "breath_force=" and the like, or the values if `last` has an equals sign.
-std::vector<Candidate> SettingsFor(const std::string& last) {
+std::vector<Candidate> SettingsFor(const google::protobuf::Descriptor& type, const std::string& last) {
   std::vector<Candidate> settings;
-  const google::protobuf::Descriptor& type = *v1::Parameters::descriptor();
   if (const size_t equals = last.find('='); equals != std::string::npos) {
     const FieldDescriptor* field = type.FindFieldByName(last.substr(0, equals));
     return field == nullptr ? settings : ChoicesOf(*field);
@@ -155,7 +154,9 @@ std::vector<Candidate> NamesOfKind(Kind kind, const NameServer& server, const Wo
     case Kind::kPreset:
       return PresetsFor(server, typed);
     case Kind::kSetting:
-      return SettingsFor(typed.back());
+      return SettingsFor(*v1::Parameters::descriptor(), typed.back());
+    case Kind::kPhysique:
+      return SettingsFor(*v1::Physique::descriptor(), typed.back());
     default:
       return {};
   }

@@ -44,6 +44,12 @@ std::string ArgumentItems(const CLI::App& command) {
   return text;
 }
 
+std::string PhysiqueItems() {
+  std::string text;
+  for (const ParameterRow& row : PhysiqueRows()) text += Item(row.name, MeaningOf(row));
+  return text;
+}
+
 std::string ParameterItems() {
   std::string text, group;
   for (const ParameterRow& row : ParameterRows()) {
@@ -80,7 +86,8 @@ std::string ManualOf(const CLI::App& root, CommandTable commands) {
   for (const CLI::App* command : root.get_subcommands([](const CLI::App*) { return true; })) {
     AddCommandText(*command, commands, text);
   }
-  absl::StrAppend(&text, ".SH PARAMETERS\nSet by \\-\\-set and by `phrenic set`:\n", ParameterItems(), ".SH SETTINGS\n",
+  absl::StrAppend(&text, ".SH PARAMETERS\nSet by \\-\\-set and by `phrenic set`:\n", ParameterItems(),
+                  ".SH BODIES\nNumbers of a body, set by \\-\\-physique:\n", PhysiqueItems(), ".SH SETTINGS\n",
                   RoffEscaped(SettingsText()), "\n.SH ENVIRONMENT\n", NamedItems(EnvironmentVariables()),
                   ".SH EXIT STATUS\n", NamedItems(ExitCodes()));
   return text;

@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "phrenic/v1/geometry.pb.h"
 #include "phrenic/v1/parameters.pb.h"
 #include "server/schema/fields.h"
 
@@ -36,14 +37,17 @@ ParameterRow RowOf(const FieldDescriptor& field) {
           quantity.help()};
 }
 
-}  // namespace
-
-std::vector<ParameterRow> ParameterRows() {
+std::vector<ParameterRow> RowsOf(const google::protobuf::Descriptor& type) {
   std::vector<ParameterRow> rows;
-  const google::protobuf::Descriptor& type = *v1::Parameters::descriptor();
   rows.reserve(static_cast<std::size_t>(type.field_count()));
   for (int f = 0; f < type.field_count(); ++f) rows.push_back(RowOf(*type.field(f)));
   return rows;
 }
+
+}  // namespace
+
+std::vector<ParameterRow> ParameterRows() { return RowsOf(*v1::Parameters::descriptor()); }
+
+std::vector<ParameterRow> PhysiqueRows() { return RowsOf(*v1::Physique::descriptor()); }
 
 }  // namespace phrenic::client

@@ -1,4 +1,4 @@
-// The live parameters as rows of text, from the schema.
+// The live parameters and the numbers of a body as rows of text, from the schema.
 #ifndef PHRENIC_CLIENT_CLI_PARAMETER_ROWS_H_
 #define PHRENIC_CLIENT_CLI_PARAMETER_ROWS_H_
 
@@ -13,6 +13,8 @@ struct ParameterRow {
 
 // Returns one row per live parameter, in the schema's order: those of a group stand together.
 std::vector<ParameterRow> ParameterRows();
+// Returns one row per number of a body.
+std::vector<ParameterRow> PhysiqueRows();
 
 }  // namespace phrenic::client
 

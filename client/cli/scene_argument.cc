@@ -36,11 +36,33 @@ absl::StatusOr<v1::Pull> ReadPull(const std::string& text) {
   return pull;
 }
 
+// Parses texts "name=value", each of which `set` sets in a message.
+template <typename Message>
+absl::StatusOr<Message> ReadPairs(const std::vector<std::string>& pairs, const char* example,
+                                  absl::Status (*set)(std::string_view, std::string_view, Message*)) {
+  Message message;
+  for (const std::string& pair : pairs) {
+    const size_t equals = pair.find('=');
+    if (equals == std::string::npos) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("\"", pair, "\" is not of the form name=value, such as ", example));
+    }
+    absl::Status status = set(pair.substr(0, equals), pair.substr(equals + 1), &message);
+    if (!status.ok()) return status;
+  }
+  return message;
+}
+
 }  // namespace
 
 absl::StatusOr<v1::SceneSource> ReadScene(const SceneOptions& options) {
   const std::string& scene = options.scene;
   v1::SceneSource source;
+  if (!options.physique.empty()) {
+    absl::StatusOr<v1::Physique> physique = ReadPhysique(options.physique);
+    if (!physique.ok()) return physique.status();
+    *source.mutable_physique() = *std::move(physique);
+  }
   if (options.resolution_mm != 0) source.set_resolution_mm(options.resolution_mm);
   if (!absl::StrContains(scene, "/") && !absl::EndsWith(scene, ".textproto")) {
     source.set_name(scene);
@@ -65,17 +87,11 @@ absl::StatusOr<google::protobuf::RepeatedPtrField<v1::Pull>> ReadPulls(const std
 }
 
 absl::StatusOr<v1::Parameters> ReadSettings(const std::vector<std::string>& settings) {
-  v1::Parameters parameters;
-  for (const std::string& setting : settings) {
-    const size_t equals = setting.find('=');
-    if (equals == std::string::npos) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("\"", setting, "\" is not of the form name=value, such as breath_force=1.5"));
-    }
-    absl::Status status = schema::SetParameter(setting.substr(0, equals), setting.substr(equals + 1), &parameters);
-    if (!status.ok()) return status;
-  }
-  return parameters;
+  return ReadPairs<v1::Parameters>(settings, "breath_force=1.5", &schema::SetParameter);
+}
+
+absl::StatusOr<v1::Physique> ReadPhysique(const std::vector<std::string>& numbers) {
+  return ReadPairs<v1::Physique>(numbers, "age=70", &schema::SetPhysique);
 }
 
 absl::StatusOr<v1::Parameters> ChosenParameters(const Model& model, const std::string& preset,

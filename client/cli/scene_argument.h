@@ -12,8 +12,9 @@
 namespace phrenic::client {
 
 struct SceneOptions {
-  std::string scene;         // a name of the catalogue, or a path: contains a slash or ends in .textproto
-  double resolution_mm = 0;  // edge length of generated bodies [mm]; 0: the scene's own
+  std::string scene;                       // a name of the catalogue, or a path: contains a slash or ends in .textproto
+  double resolution_mm = 0;                // edge length of generated bodies [mm]; 0: the scene's own
+  std::vector<std::string> physique = {};  // "name=value" of message Physique, in place of the scene's
 };
 
 // Returns the scene's name, or the scene read from its file. Errors name the file and the line.
@@ -24,6 +25,9 @@ absl::StatusOr<google::protobuf::RepeatedPtrField<v1::Pull>> ReadPulls(const std
 
 // Parses parameters "name=value". INVALID_ARGUMENT names the parameter or quotes the text.
 absl::StatusOr<v1::Parameters> ReadSettings(const std::vector<std::string>& settings);
+
+// Parses numbers of a body "name=value". INVALID_ARGUMENT names the number or quotes the text.
+absl::StatusOr<v1::Physique> ReadPhysique(const std::vector<std::string>& numbers);
 
 // Returns the parameters of a model with a preset of its scene (empty: none), and on top of it the settings. The errors
 // of FindPreset and ReadSettings.

@@ -11,10 +11,18 @@ namespace phrenic::client {
 void AddScene(CLI::App& command, SceneOptions& options) {
   command.add_option("SCENE", options.scene, "name of a scene, or a .textproto file")->required();
   AddResolution(command, options.resolution_mm);
+  AddPhysique(command, options.physique);
 }
 
 void AddResolution(CLI::App& command, double& resolution_mm) {
   command.add_option("--resolution", resolution_mm, "edge length of generated bodies [mm]")->check(NumberIn(0.5, 50.0));
+}
+
+void AddPhysique(CLI::App& command, std::vector<std::string>& physique) {
+  command
+      .add_option("--physique", physique,
+                  "a number of the generated body, such as sex=female or age=70; may be repeated")
+      ->allow_extra_args(false);
 }
 
 void AddParameters(CLI::App& command, std::vector<std::string>& settings) {

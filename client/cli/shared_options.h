@@ -14,9 +14,10 @@
 
 namespace phrenic::client {
 
-// SCENE and --resolution.
+// SCENE, --resolution and --physique.
 void AddScene(CLI::App& command, SceneOptions& options);
 void AddResolution(CLI::App& command, double& resolution_mm);
+void AddPhysique(CLI::App& command, std::vector<std::string>& physique);
 void AddParameters(CLI::App& command, std::vector<std::string>& settings);
 void AddPreset(CLI::App& command, std::string& preset);
 void AddPulls(CLI::App& command, std::vector<std::string>& pulls);

@@ -95,6 +95,7 @@ constexpr Command kCommands[] = {
      Formats::kDocument,
      SetUpPhantom,
      {{"phrenic phantom --body tall --out tall.nii.gz", "a volume to try `phrenic patient` with"},
+      {"phrenic phantom --physique sex=female --physique age=70 --out woman.nii.gz", "of a person"},
       {"phrenic phantom thorax --preset deep --ct --field --out deep", "a 4D phantom, to judge registrations with"},
       {"phrenic phantom thorax --phases 4 --dicom seg,obj --out quiet", "for archives and 3D Slicer"}}},
     {"fluoroscopy",

@@ -27,9 +27,16 @@ struct PhantomOptions {
   BreathOptions breath;  // with a scene
 };
 
+absl::StatusOr<imaging::PhantomBody> BodyOf(const PhantomOptions& options) {
+  if (options.breath.scene.physique.empty()) return imaging::FindPhantomBody(options.body);
+  const absl::StatusOr<v1::Physique> physique = ReadPhysique(options.breath.scene.physique);
+  if (!physique.ok()) return physique.status();
+  return imaging::PhantomBodyOf(*physique);
+}
+
 int MakePhantom(const Context& context, const PhantomOptions& options) {
   if (!options.breath.scene.scene.empty()) return WriteBreath(context, options.breath, options.voxel, options.out);
-  const absl::StatusOr<imaging::PhantomBody> body = imaging::FindPhantomBody(options.body);
+  const absl::StatusOr<imaging::PhantomBody> body = BodyOf(options);
   if (!body.ok()) return Fail(body.status());
   const absl::StatusOr<v1::LabelMap> map = imaging::ReadLabelMap(options.labels);
   if (!map.ok()) return Fail(map.status());
@@ -47,6 +54,7 @@ int MakePhantom(const Context& context, const PhantomOptions& options) {
 // Adds what needs a scene.
 void AddBreath(CLI::App& command, CLI::Option* scene, BreathOptions& breath) {
   AddResolution(command, breath.scene.resolution_mm);
+  AddPhysique(command, breath.scene.physique);
   AddPreset(command, breath.preset);
   AddParameters(command, breath.settings);
   command.add_option("--phases", breath.phases, "phases of one breath; 0 is the start")
@@ -84,7 +92,7 @@ CommandFunction SetUpPhantom(CLI::App& command) {
       ->capture_default_str();
   AddBreath(command, scene, breath);
   CLI::Option* body = command.add_option("--body", options->body, "adult, small, tall, or flat (flat domes)");
-  body->capture_default_str()->excludes(scene);
+  body->capture_default_str()->excludes(scene)->excludes(command.get_option("--physique"));
   AddLabels(command, options->labels);
   command.add_option("--noise", options->noise, "fraction of border voxels with a neighbour's label")
       ->check(NumberIn(0.0, 0.3))

@@ -130,6 +130,7 @@ CommandFunction SetUpReplay(CLI::App& command) {
   command.add_option("--scene", options->scene.scene,
                      "name of the scene, or a .textproto file (the one that FILE names)");
   AddResolution(command, options->scene.resolution_mm);
+  AddPhysique(command, options->scene.physique);
   AddDataFolder(command, options->data_dir);
   return Bind(&Replay, options);
 }

@@ -8,7 +8,7 @@
 #include "server/anatomy/dimensions.h"
 #include "server/anatomy/meshing/smooth.h"
 #include "server/mesh/units.h"
-#include "server/schema/schema.h"
+#include "server/schema/physique.h"
 
 namespace phrenic::anatomy {
 namespace {
@@ -39,17 +39,24 @@ Bow BowAt(double z) {
   return {(kSpineTop - kSpineBottom) / pi * sine * sine, std::sin(2 * pi * t)};
 }
 
+// True if the numbers that the map reads are equal. Both are complete.
+bool SameShape(v1::Physique a, v1::Physique b) {
+  for (v1::Physique* each : {&a, &b}) {
+    each->clear_sex();
+    each->clear_age();
+    each->clear_barrel_chest();
+  }
+  return a.SerializeAsString() == b.SerializeAsString();
+}
+
 // 0 at the domes' rim and at the lungs' apices, 1 at the domes.
 double ShareOfDomes(double z) { return Smooth(z < 205 ? (z - 95) / 110 : (330 - z) / 125); }
 
 }  // namespace
 
 PhysiqueMap::PhysiqueMap(const v1::Physique& physique) {
-  v1::Physique full = physique;
-  schema::FillDefaults(&full);
-  v1::Physique adult;
-  schema::FillDefaults(&adult);
-  identity_ = full.SerializeAsString() == adult.SerializeAsString();
+  const v1::Physique full = schema::CompletePhysique(physique);
+  identity_ = SameShape(full, schema::CompletePhysique({}));
   scale_ = full.height() / kAdultHeight * Eigen::Vector3d(full.chest_width(), full.chest_depth(), 1);
   right_dome_ = full.right_dome_height() / kMillimetre;
   left_dome_ = full.left_dome_height() / kMillimetre;

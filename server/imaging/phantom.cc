@@ -1,7 +1,9 @@
 #include "server/imaging/phantom.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include "absl/strings/str_cat.h"
@@ -24,9 +26,24 @@ double Share(double z) {
 
 bool IsSoft(v1::Structure structure) { return structure == v1::STRUCTURE_LUNG || structure == v1::STRUCTURE_DIAPHRAGM; }
 
+// Returns the bounds of the box that the body's map makes of the generated thorax' box [mm].
+Eigen::AlignedBox3d BoundsOf(const PhantomBody& body) {
+  Eigen::AlignedBox3d bounds;
+  const int parts = body.physique == nullptr ? 1 : 12;
+  for (int k = 0; k <= parts; ++k) {
+    for (int j = 0; j <= parts; ++j) {
+      for (int i = 0; i <= parts; ++i) {
+        const Eigen::Vector3d at = kLow + (kHigh - kLow).cwiseProduct(Eigen::Vector3d(i, j, k)) / parts;
+        bounds.extend(1e3 * body.FromGenerated(kMillimetre * at, false));
+      }
+    }
+  }
+  return bounds;
+}
+
 LabelVolume EmptyVolume(const PhantomBody& body, double voxel) {
-  const Eigen::Vector3d low = 1e3 * body.FromGenerated(kMillimetre * kLow, false),
-                        high = 1e3 * body.FromGenerated(kMillimetre * kHigh, false);
+  const Eigen::AlignedBox3d bounds = BoundsOf(body);
+  const Eigen::Vector3d low = bounds.min(), high = bounds.max();
   LabelVolume volume;
   volume.size = ((high - low) / voxel).array().ceil().cast<int>() + 1;
   // The usual scanner orientation: i to the patient's right, j anterior, k superior.
@@ -49,10 +66,13 @@ void AddOrgans(const PhantomBody& body, const v1::LabelMap& map, LabelVolume& vo
   std::vector<v1::LabelMeaning> organs;
   std::copy_if(map.labels().begin(), map.labels().end(), std::back_inserter(organs),
                [](const v1::LabelMeaning& label) { return label.has_organ(); });
+  std::optional<anatomy::PhysiqueInverse> inverse;
+  if (body.physique != nullptr) inverse.emplace(*body.physique);
   ForEachVoxel(volume.size, [&](const Eigen::Vector3i& at) {
     Label& voxel = volume.labels[volume.Index(at)];
     if (voxel != 0) return;
-    const Eigen::Vector3d point = 1e3 * body.ToGenerated(kMillimetre * (volume.to_patient * at.cast<double>()), true);
+    const Eigen::Vector3d placed = kMillimetre * (volume.to_patient * at.cast<double>());
+    const Eigen::Vector3d point = 1e3 * body.ToGenerated(placed, true, inverse ? &*inverse : nullptr);
     if (point.z() < 60 || point.z() > 310) return;
     for (const v1::LabelMeaning& organ : organs) {
       if (!InOrgan(organ.organ(), point)) continue;
@@ -144,12 +164,16 @@ void Pierce(int holes, double voxel, std::mt19937& random, LabelVolume& volume) 
 
 Eigen::Vector3d PhantomBody::FromGenerated(const Eigen::Vector3d& generated, bool soft) const {
   Eigen::Vector3d placed = generated;
+  if (physique != nullptr) placed = kMillimetre * (*physique)(generated / kMillimetre);
   if (soft) placed.z() -= kMillimetre * flattening * Share(generated.z() / kMillimetre);
   return scale.cwiseProduct(placed) + kMillimetre * shift;
 }
 
-Eigen::Vector3d PhantomBody::ToGenerated(const Eigen::Vector3d& placed, bool soft) const {
+Eigen::Vector3d PhantomBody::ToGenerated(const Eigen::Vector3d& placed, bool soft,
+                                         anatomy::PhysiqueInverse* inverse) const {
   const Eigen::Vector3d lowered = (placed - kMillimetre * shift).cwiseQuotient(scale);
+  if (inverse != nullptr) return kMillimetre * (*inverse)(lowered / kMillimetre);
+  if (physique != nullptr) return kMillimetre * anatomy::PhysiqueInverse(*physique)(lowered / kMillimetre);
   Eigen::Vector3d generated = lowered;
   constexpr int kRounds = 20;  // fixed-point iteration; a contraction, since d(flattening)/dz < 1
   for (int i = 0; soft && i < kRounds; ++i) {
@@ -166,6 +190,13 @@ absl::StatusOr<PhantomBody> FindPhantomBody(std::string_view name) {
   }
   return absl::NotFoundError(
       absl::StrCat("there is no body \"", std::string(name), "\"; there are adult, small, tall and flat"));
+}
+
+PhantomBody PhantomBodyOf(const v1::Physique& physique) {
+  PhantomBody body{.name = "person"};
+  const auto map = std::make_shared<const anatomy::PhysiqueMap>(physique);
+  if (!map->IsIdentity()) body.physique = map;
+  return body;
 }
 
 absl::StatusOr<Mesh> PhantomPart(const PhantomBody& body, const v1::Anatomy& part, double resolution_mm) {

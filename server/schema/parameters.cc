@@ -13,38 +13,37 @@ namespace {
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 
-absl::Status NoSuchParameter(std::string_view name) {
+absl::Status NoSuchField(const Descriptor& type, std::string_view kind, std::string_view name) {
   constexpr size_t kLongestShown = 64;
-  const Descriptor& type = *v1::Parameters::descriptor();
   std::vector<std::string> names;
   names.reserve(type.field_count());
   for (int i = 0; i < type.field_count(); ++i) names.push_back(type.field(i)->name());
   const std::string shown(name.substr(0, kLongestShown));
-  return absl::InvalidArgumentError(absl::StrCat("there is no parameter \"", shown, "\"", ThereAre(shown, names)));
+  return absl::InvalidArgumentError(absl::StrCat("there is no ", std::string(kind), " \"", shown, "\"", ThereAre(shown, names)));
 }
 
-absl::Status SetToggle(const FieldDescriptor& field, const std::string& value, v1::Parameters* parameters) {
+absl::Status SetToggle(const FieldDescriptor& field, const std::string& value, google::protobuf::Message* message) {
   const std::string text = absl::AsciiStrToLower(value);
   const bool on = text == "on" || text == "true" || text == "yes" || text == "1";
   const bool off = text == "off" || text == "false" || text == "no" || text == "0";
   if (!on && !off) {
     return absl::InvalidArgumentError(absl::StrCat(field.name(), ": \"", value, "\" is neither on nor off"));
   }
-  parameters->GetReflection()->SetBool(parameters, &field, on);
+  message->GetReflection()->SetBool(message, &field, on);
   return absl::OkStatus();
 }
 
-absl::Status SetChoice(const FieldDescriptor& field, const std::string& text, v1::Parameters* parameters) {
+absl::Status SetChoice(const FieldDescriptor& field, const std::string& text, google::protobuf::Message* message) {
   const google::protobuf::EnumValueDescriptor* value = FindChoice(*field.enum_type(), text);
   if (value == nullptr) {
     return absl::InvalidArgumentError(
         absl::StrCat(field.name(), ": there is no \"", text, "\"", ThereAre(text, ChoiceNameList(*field.enum_type()))));
   }
-  parameters->GetReflection()->SetEnum(parameters, &field, value);
+  message->GetReflection()->SetEnum(message, &field, value);
   return absl::OkStatus();
 }
 
-absl::Status SetNumber(const FieldDescriptor& field, const std::string& text, v1::Parameters* parameters) {
+absl::Status SetNumber(const FieldDescriptor& field, const std::string& text, google::protobuf::Message* message) {
   const v1::Quantity* quantity = QuantityOf(field);
   double value = 0;
   if (!absl::SimpleAtod(text, &value)) {
@@ -54,26 +53,36 @@ absl::Status SetNumber(const FieldDescriptor& field, const std::string& text, v1
   if (const auto problem = NumberProblem(value, quantity)) {
     return absl::InvalidArgumentError(absl::StrCat(field.name(), ": ", *problem));
   }
-  parameters->GetReflection()->SetDouble(parameters, &field, value);
+  message->GetReflection()->SetDouble(message, &field, value);
   return absl::OkStatus();
+}
+
+// Sets a field of a message whose fields are switches, choices and real numbers (tests/schema checks that).
+absl::Status SetField(std::string_view kind, std::string_view name, std::string_view value,
+                      google::protobuf::Message* message) {
+  const Descriptor& type = *message->GetDescriptor();
+  const FieldDescriptor* field = type.FindFieldByName(std::string(name));
+  if (field == nullptr) return NoSuchField(type, kind, name);
+  std::string text(value);
+  absl::StripAsciiWhitespace(&text);
+  switch (field->cpp_type()) {
+    case FieldDescriptor::CPPTYPE_BOOL:
+      return SetToggle(*field, text, message);
+    case FieldDescriptor::CPPTYPE_ENUM:
+      return SetChoice(*field, text, message);
+    default:
+      return SetNumber(*field, text, message);
+  }
 }
 
 }  // namespace
 
 absl::Status SetParameter(std::string_view name, std::string_view value, v1::Parameters* parameters) {
-  const FieldDescriptor* field = v1::Parameters::descriptor()->FindFieldByName(std::string(name));
-  if (field == nullptr) return NoSuchParameter(name);
-  std::string text(value);
-  absl::StripAsciiWhitespace(&text);
-  // Parameters are switches, choices and real numbers; tests/schema checks that.
-  switch (field->cpp_type()) {
-    case FieldDescriptor::CPPTYPE_BOOL:
-      return SetToggle(*field, text, parameters);
-    case FieldDescriptor::CPPTYPE_ENUM:
-      return SetChoice(*field, text, parameters);
-    default:
-      return SetNumber(*field, text, parameters);
-  }
+  return SetField("parameter", name, value, parameters);
+}
+
+absl::Status SetPhysique(std::string_view name, std::string_view value, v1::Physique* physique) {
+  return SetField("number of a physique", name, value, physique);
 }
 
 }  // namespace phrenic::schema

@@ -31,6 +31,8 @@ void FillDefaults(google::protobuf::Message* message);
 // Sets one live parameter from text: "breath_force" and "1.5", "apply_muscles" and "off". INVALID_ARGUMENT names the
 // field and the allowed range, or lists the parameters if there is none of that name.
 absl::Status SetParameter(std::string_view name, std::string_view value, v1::Parameters* parameters);
+// Sets one number of a body from text in the same way: "sex" and "female", "age" and "70".
+absl::Status SetPhysique(std::string_view name, std::string_view value, v1::Physique* physique);
 
 // Parses text-format `text` into `message`, moves older names of fields to the new ones and validates it. `name` is for
 // errors: "name:line:column: ...".

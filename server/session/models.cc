@@ -13,6 +13,7 @@
 #include "server/mechanics/compile/shape_size.h"
 #include "server/mechanics/parallel/compile_threads.h"
 #include "server/mechanics/stop_check.h"
+#include "server/schema/physique.h"
 #include "server/schema/schema.h"
 #include "server/session/mesh_cache/meshes_ahead.h"
 #include "server/session/meshes.h"
@@ -75,6 +76,9 @@ absl::StatusOr<v1::Scene> Models::Resolve(const v1::SceneSource& source) const {
     scene = *std::move(found);
   } else {
     return absl::InvalidArgumentError("source: is empty; give the name of a scene, or a scene");
+  }
+  if (source.has_physique()) {
+    if (absl::Status status = schema::ReplacePhysique(source.physique(), &scene); !status.ok()) return status;
   }
   if (source.has_resolution_mm()) {
     for (v1::Body& body : *scene.mutable_bodies()) {

@@ -15,6 +15,7 @@
 #include "server/mesh/self_crossings.h"
 #include "server/mesh/topology.h"
 #include "server/mesh/units.h"
+#include "server/schema/physique.h"
 #include "server/schema/schema.h"
 #include "tests/anatomy/parts.h"
 
@@ -43,6 +44,7 @@ std::vector<std::string> Extremes() {
   std::vector<std::string> texts;
   const auto* descriptor = v1::Physique::descriptor();
   for (int i = 0; i < descriptor->field_count(); ++i) {
+    if (!descriptor->field(i)->options().HasExtension(v1::quantity)) continue;  // sex
     const auto& quantity = descriptor->field(i)->options().GetExtension(v1::quantity);
     for (const double end : {quantity.minimum(), quantity.maximum()}) {
       texts.push_back(descriptor->field(i)->name() + ": " + std::to_string(end));
@@ -54,6 +56,8 @@ std::vector<std::string> Extremes() {
       "scoliosis_degrees: -50 kyphosis_degrees: -20 rib_slope_degrees: 8 chest_width: 0.8 left_dome_height: 0.02");
   texts.push_back(
       "scoliosis_degrees: 50 kyphosis_degrees: 40 rib_slope_degrees: 8 height: 1.2 left_dome_height: -0.025");
+  texts.push_back("sex: SEX_FEMALE");
+  texts.push_back("sex: SEX_FEMALE age: 90 barrel_chest: 1 scoliosis_degrees: -50 height: 1.2");
   return texts;
 }
 
@@ -107,9 +111,8 @@ TEST(Physique, IsOneToOneAtItsExtremes) {
   for (const std::string& text : Extremes()) {
     const v1::Physique physique = Read(text);
     const PhysiqueMap map(physique);
-    const double scale = std::pow((physique.has_height() ? physique.height() : 1.75) / 1.75, 3) *
-                         (physique.has_chest_width() ? physique.chest_width() : 1) *
-                         (physique.has_chest_depth() ? physique.chest_depth() : 1);
+    const v1::Physique full = schema::CompletePhysique(physique);
+    const double scale = std::pow(full.height() / 1.75, 3) * full.chest_width() * full.chest_depth();
     double least = 1e9;
     ForEachPlace([&](const Eigen::Vector3d& at) { least = std::min(least, Determinant(map, at) / scale); });
     EXPECT_GT(least, 0.15) << text;

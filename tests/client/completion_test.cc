@@ -44,6 +44,8 @@ TEST(Complete, KnowsParametersTheirValuesAndPresets) {
   EXPECT_EQ(Completed("phrenic run thorax --set breath_f"), "breath_force=\t0 to 20\n:nospace\n");
   EXPECT_EQ(Completed("phrenic run thorax --set apply_links="), "apply_links=on\napply_links=off\n:nothing\n");
   EXPECT_THAT(Completed("phrenic run thorax --set integrator=b"), HasSubstr("integrator=bdf2\n"));
+  EXPECT_EQ(Completed("phrenic run thorax --physique ag"), "age=\t20 to 90 years\n:nospace\n");
+  EXPECT_EQ(Completed("phrenic phantom --physique sex="), "sex=female\nsex=male\n:nothing\n");
   EXPECT_EQ(Completed("phrenic set class breath_force=2 breath_l"), "breath_length=\t0.5 to 30 s\n:nospace\n");
   EXPECT_THAT(Completed("phrenic run thorax --server 127.0.0.1:1 --preset de"), testing::StartsWith("deep\t"));
 }

@@ -1,6 +1,8 @@
 // `phrenic phantom` of a scene: files, numbers, and errors.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 #include "tests/client/programs.h"
@@ -55,6 +57,45 @@ TEST(BreathingPhantom, ThatCannotBeIsAnErrorWithTheRemedy) {
   EXPECT_THAT(empty.err, HasSubstr("no closed body of the scene has a tissue"));
   EXPECT_THAT(Phrenic({"phantom", "thorax", "--resolution", "12", "--out", WriteScratch("file", "x")}).err,
               HasSubstr("it is a folder"));
+}
+
+TEST(BreathingPhantom, OfASmallPersonIsTheAdultsScaled) {
+  const auto lung = [](const char* height) {
+    const Outcome made = BreathPhantom(Scratch(height), {"--physique", std::string("height=") + height, "-o", "json"});
+    EXPECT_EQ(made.code, 0) << made.err;
+    return made.json()["phases"][0]["structures"]["lung_right"]["surface_ml"].get<double>();
+  };
+  EXPECT_NEAR(lung("1.4") / lung("1.75"), std::pow(1.4 / 1.75, 3), 1e-6);
+}
+
+// Returns the number of voxels of a phantom without a scene.
+double Voxels(const std::string& out, std::vector<std::string> more) {
+  std::vector<std::string> arguments = {"phantom", "--voxel", "8", "--out", out};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const Outcome made = Phrenic(arguments);
+  EXPECT_EQ(made.code, 0) << made.err;
+  int x = 0, y = 0, z = 0;
+  EXPECT_EQ(sscanf(made.out.substr(made.out.find(": ") + 2).c_str(), "%d x %d x %d", &x, &y, &z), 3) << made.out;
+  return 1.0 * x * y * z;
+}
+
+TEST(Phantom, OfAPersonHasItsShapeAndTheAdultWrittenOutIsTodays) {
+  const std::string adult = Scratch("adult.nii"), written = Scratch("written.nii"), woman = Scratch("woman.nii");
+  const double of_adult = Voxels(adult, {});
+  EXPECT_EQ(Voxels(written, {"--physique", "sex=male", "--physique", "age=30"}), of_adult);
+  EXPECT_EQ(ReadAll(written), ReadAll(adult));
+  EXPECT_LT(Voxels(woman, {"--physique", "sex=female"}), 0.85 * of_adult);
+}
+
+TEST(Phantom, ThatIsNoPersonIsAnErrorThatNamesTheNumber) {
+  const auto error = [](const char* number) {
+    return Phrenic({"phantom", "--physique", number, "--out", "x.nii"}).err;
+  };
+  EXPECT_THAT(error("age=7"), HasSubstr("age: 7 is outside 20 to 90 years"));
+  EXPECT_THAT(error("hight=1.7"), HasSubstr("did you mean height?"));
+  EXPECT_THAT(error("sex"), HasSubstr("name=value"));
+  EXPECT_NE(Phrenic({"phantom", "--physique", "age=70", "--body", "tall", "--out", "x.nii"}).code, 0);
+  EXPECT_THAT(Phrenic({"run", "cube-springs", "--physique", "age=70"}).err, HasSubstr("generates no body"));
 }
 
 }  // namespace

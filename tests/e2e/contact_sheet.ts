@@ -1,3 +1,5 @@
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import type { Browser, Page } from "playwright-core";
 import { ViewerPage } from "./browser";
@@ -38,12 +40,81 @@ const clip = { x: 187, y: 88, width: 386, height: 560 };
 export async function contactSheet(browser: Browser, server: Server, path: string): Promise<void> {
   const tiles: string[] = [];
   for (const [i, column] of columns.entries()) tiles.push(await columnOf(browser, server, column, `session-${i}`));
-  const page = await browser.newPage({ viewport: { width: 190 * columns.length, height: 600 } });
-  const style = `body { margin: 0; background: #171c22; color: #e8eaed; font: 14px sans-serif; display: flex }
-    figure { margin: 0; width: 190px } figcaption { padding: 8px 0 4px; text-align: center }
-    img { display: block; width: 190px }`;
+  await writeSheet(browser, tiles, columns.length, path, 82);
+}
+
+/** A body of client/examples/bodies.txt: a title, and numbers "name=value". */
+interface NamedBody {
+  title: string;
+  numbers: string[];
+}
+
+function namedBodies(): NamedBody[] {
+  const lines = readFileSync(join(import.meta.dirname, "../../client/examples/bodies.txt"), "utf8").split("\n");
+  return lines
+    .filter((line) => line.includes(":") && !line.startsWith("#"))
+    .map((line) => {
+      const colon = line.indexOf(":");
+      return {
+        title: line.slice(0, colon),
+        numbers: line
+          .slice(colon + 1)
+          .split(" ")
+          .filter(Boolean),
+      };
+    });
+}
+
+/** Writes a picture of the bodies at rest, from the front and from the left, at one scale. */
+export async function bodySheet(browser: Browser, server: Server, path: string): Promise<void> {
+  const tiles: string[] = [];
+  const bodies = namedBodies();
+  let adult: number | undefined;
+  for (const [i, body] of bodies.entries()) {
+    const { pictures, distance } = await picturesOf(browser, server, body, `body-${i}`);
+    adult ??= distance;
+    // The viewer fits each body into the window: its distance is the scale.
+    const width = Math.round(tileWidth * (distance / adult));
+    const images = pictures.map((picture) => `<div class="tile">${image(picture, width)}</div>`);
+    tiles.push(`<figure><figcaption>${body.title}</figcaption>${images.join("")}</figure>`);
+  }
+  await writeSheet(browser, tiles, bodies.length / 2, path, 75);
+}
+
+const tileWidth = 190;
+
+/** Returns the pictures of a body, and the distance from which they are taken [m]. */
+async function picturesOf(browser: Browser, server: Server, { numbers }: NamedBody, id: string) {
+  await server.phrenic("create", "thorax", "--id", id, ...numbers.flatMap((number) => ["--physique", number]));
+  const viewer = await ViewerPage.open(browser, `${server.url}?session=${id}`, size);
+  const { page } = viewer;
+  await hideControls(page);
+  await choose(page, "quality", "full");
+  const pictures: Buffer[] = [];
+  const eyes: [number, number, number][] = [];
+  for (const { side } of views) {
+    await click(page, `[data-view="${side}"]`);
+    await page.waitForTimeout(3000);
+    eyes.push(await page.evaluate(() => window.phrenic!.eye()));
+    pictures.push(await page.screenshot({ clip, type: "png" }));
+  }
+  await viewer.close();
+  await server.phrenic("delete", id);
+  return { pictures, distance: eyes[1][0] - eyes[0][0] }; // from the left and from the front, around one centre
+}
+
+function image(picture: Buffer, width: number): string {
+  return `<img style="width: ${width}px" src="data:image/png;base64,${picture.toString("base64")}">`;
+}
+
+async function writeSheet(browser: Browser, tiles: string[], across: number, path: string, quality: number) {
+  const page = await browser.newPage({ viewport: { width: tileWidth * across, height: 600 } });
+  const style = `body { margin: 0; background: #171c22; color: #e8eaed; font: 14px sans-serif; display: flex; flex-wrap: wrap }
+    figure { margin: 0; width: ${tileWidth}px } figcaption { padding: 8px 0 4px; text-align: center }
+    .tile { height: 285px; overflow: hidden; display: flex; align-items: center; justify-content: center }
+    img { display: block; width: ${tileWidth}px }`;
   await page.setContent(`<style>${style}</style>${tiles.join("")}`);
-  await page.locator("body").screenshot({ path, type: "jpeg", quality: 82 });
+  await page.locator("body").screenshot({ path, type: "jpeg", quality });
   await page.close();
 }
 
@@ -53,10 +124,7 @@ async function columnOf(browser: Browser, server: Server, { preset, title, time,
   while (await isPlaying(server, id)) await sleep(200);
   const viewer = await ViewerPage.open(browser, `${server.url}?session=${id}`, size);
   const { page } = viewer;
-  await page.evaluate(() => {
-    for (const each of document.querySelectorAll<HTMLElement>("#stage > :not(canvas)"))
-      each.style.visibility = "hidden";
-  });
+  await hideControls(page);
   await choose(page, "quality", "full");
   await choose(page, "ghost", "rest");
   const pictures: string[] = [];
@@ -64,12 +132,18 @@ async function columnOf(browser: Browser, server: Server, { preset, title, time,
     if (cut) await cutAt(page, plane, position);
     await click(page, `[data-view="${side}"]`);
     await page.waitForTimeout(3000); // The canvas is drawn at full resolution when nothing moves.
-    const picture = await page.screenshot({ clip, type: "png" });
-    pictures.push(`<img src="data:image/png;base64,${picture.toString("base64")}">`);
+    pictures.push(image(await page.screenshot({ clip, type: "png" }), tileWidth));
   }
   await viewer.close();
   await server.phrenic("delete", id);
   return `<figure><figcaption>${title}</figcaption>${pictures.join("")}</figure>`;
+}
+
+function hideControls(page: Page): Promise<void> {
+  return page.evaluate(() => {
+    for (const each of document.querySelectorAll<HTMLElement>("#stage > :not(canvas)"))
+      each.style.visibility = "hidden";
+  });
 }
 
 async function isPlaying(server: Server, wanted: string): Promise<boolean> {

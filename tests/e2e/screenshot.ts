@@ -1,7 +1,7 @@
 import { join } from "node:path";
 import { test } from "vitest";
 import { launchBrowser, ViewerPage } from "./browser";
-import { contactSheet } from "./contact_sheet";
+import { bodySheet, contactSheet } from "./contact_sheet";
 import { outFolder, Server } from "./server";
 
 const web = join(import.meta.dirname, "../../web");
@@ -71,6 +71,18 @@ test("ContactSheet", { timeout: 900_000 }, async () => {
   const server = await Server.start("none");
   try {
     await contactSheet(browser, server, join(web, "breathing.jpg"));
+  } finally {
+    await browser.close();
+    await server.end();
+  }
+});
+
+// `npm run screenshot -- -t Bodies`: ten bodies at rest, side by side.
+test("Bodies", { timeout: 900_000 }, async () => {
+  const browser = await launchBrowser();
+  const server = await Server.start("none");
+  try {
+    await bodySheet(browser, server, join(web, "bodies.jpg"));
   } finally {
     await browser.close();
     await server.end();

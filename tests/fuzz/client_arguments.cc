@@ -17,6 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto pulls = client::ReadPulls({text});
   if (pulls.ok() && pulls->size() != 1) std::abort();
   (void)client::ReadSettings({text});
+  (void)client::ReadPhysique({text});
   (void)client::ReadLimits({text});
   const auto input = client::ReadUncertainInput(text);
   if (input.ok() && input->distribution_case() == v1::UncertainInput::DISTRIBUTION_NOT_SET) std::abort();

@@ -19,6 +19,7 @@
 #include "server/mechanics/stability/largest_step.h"
 #include "server/mechanics/step/combination.h"
 #include "server/mechanics/step/step_plan.h"
+#include "server/schema/physique.h"
 #include "server/schema/schema.h"
 
 namespace phrenic {
@@ -175,6 +176,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   // Unset fields of these have a meaning, so that they must not be filled with defaults.
   model.scene.mutable_parameters()->CopyFrom(scene.parameters());
   model.scene.mutable_presets()->CopyFrom(scene.presets());
+  schema::SetCompliancesOfAge(&model.scene);
   const auto size = EstimateSize(model.scene, options.size_of, options.limits);
   if (!size.ok()) return size.status();
   ResolveParameters(model);

@@ -4,9 +4,9 @@
 
 namespace phrenic::session {
 
-// SHA-256 of the libraries anatomy and mesh, in hexadecimal: all programs of a build have the same, and those of
-// another version, compiler or option another one. Written by server/session/mesh_cache/mesh_code.cmake when these are
-// linked.
+// SHA-256 of the libraries anatomy, mesh and schema, which completes a physique, in hexadecimal: all programs of a
+// build have the same, and those of another version, compiler or option another one. Written by
+// server/session/mesh_cache/mesh_code.cmake when these are linked.
 extern const char kMeshCode[];
 
 }  // namespace phrenic::session
