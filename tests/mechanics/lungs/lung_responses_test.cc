@@ -23,7 +23,7 @@ class LungResponsesTest : public testing::Test {
                             : z < -0.03 ? LungNeighbour::kNone
                                         : LungNeighbour::kWall);
     }
-    lung_ = std::make_unique<LungResponses>(*LungResponses::Make(*tissue_, neighbours_));
+    lung_ = std::make_unique<LungResponses>(*LungResponses::Make(*tissue_, neighbours_, {LungWeight()}));
   }
   static void TearDownTestSuite() {
     lung_.reset();
@@ -112,7 +112,8 @@ TEST(TissueAtPoint, HasTheStrainsOfItsGradient) {
 
 TEST_F(LungResponsesTest, StopsWithTheReason) {
   const StopCheck stop([] { return true; }, 0, "--x");
-  EXPECT_EQ(LungResponses::Make(*tissue_, neighbours_, stop).status().code(), absl::StatusCode::kCancelled);
+  EXPECT_EQ(LungResponses::Make(*tissue_, neighbours_, {LungWeight()}, stop).status().code(),
+            absl::StatusCode::kCancelled);
 }
 
 }  // namespace
