@@ -54,6 +54,20 @@ TEST_F(LungResponsesTest, MovesAsTheFullSolutionWhereTheSurroundingsMoveSmoothly
   EXPECT_LT((reduced - full).norm(), 0.03 * full.norm());
 }
 
+// Two weights in one set of shapes, each with its own responses to motion and pressure.
+TEST_F(LungResponsesTest, MovesAsTheFullSolutionUnderEachWeight) {
+  const std::vector<LungWeight> weights = {{}, {{0, 0, 2}, tissue_->box().center(), 1}};
+  const LungResponses lung = *LungResponses::Make(*tissue_, neighbours_, weights);
+  for (size_t i = 0; i < weights.size(); ++i) {
+    const PressedLung full = tissue_->Under(weights[i]).SolvePressed(Breath());
+    EXPECT_LT((lung.Nodes(lung.Amplitudes(Breath(), i)) - full.followed).norm(), 0.03 * full.followed.norm()) << i;
+    const Points pressed = lung.Nodes(lung.PerPressure(i)) / LungElasticity().contact;
+    EXPECT_LT((pressed - full.pressed).norm(), 0.03 * full.pressed.norm()) << i;
+  }
+  EXPECT_GT((lung.Amplitudes(Breath(), 1) - lung.Amplitudes(Breath(), 0)).norm(),
+            0.03 * lung.Amplitudes(Breath(), 0).norm());
+}
+
 TEST_F(LungResponsesTest, RestsWhereNothingMoves) {
   const Eigen::VectorXd amplitudes = lung_->Amplitudes(Points::Zero(3, tissue_->points().cols()));
   EXPECT_EQ(amplitudes, Eigen::VectorXd::Zero(amplitudes.size()));
