@@ -105,15 +105,6 @@ TEST_F(LungBreath, VentilatesTheBaseMoreUpright) {
   }
 }
 
-// The diaphragm ventilates the base, the ribs the apex (Roussos et al., J Appl Physiol 1977;42:389).
-TEST_F(LungBreath, GoesToTheBaseWithTheDiaphragmAndToTheApexWithTheRibs) {
-  const auto diaphragm = Read("diaphragmatic"), quiet = Read("quiet"), chest = Read("chest");
-  for (const size_t lung : {kRight, kLeft}) {
-    EXPECT_GT(BaseOverApex(diaphragm[lung]), 1.1 * BaseOverApex(quiet[lung]));
-    EXPECT_LT(BaseOverApex(chest[lung]), 0.9 * BaseOverApex(quiet[lung]));
-  }
-}
-
 // A ventilator pushes the upper part of the domes down, where the abdomen presses least: air moves forward.
 TEST_F(LungBreath, MovesForwardWithAVentilator) {
   const auto breathes = Read("quiet"), ventilated = Read("ventilator");

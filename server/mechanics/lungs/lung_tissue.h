@@ -33,7 +33,7 @@ struct LungElasticity {
   double poisson = 0.3;   // [1]
   double contact = 500;   // k/E, stiffness along the normal per area and modulus [1/m]
   double tangential = 0;  // the same along the surface [1/m]; as large as `contact`: glued
-  LungWeight weight;
+  LungWeight weight = {};
 };
 
 // What moves a lung, as displacements of the grid's nodes (3 x nodes).
