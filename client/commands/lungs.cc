@@ -35,7 +35,7 @@ struct LungsOptions {
   SceneOptions scene;
   std::vector<std::string> presets;  // empty: the scene's own parameters
   std::vector<std::string> settings;
-  bool glued = false;
+  bool glued = false, weightless = false, unfilled = false;  // for comparison
   double edge_mm = LungElasticity().edge * kMillimetresAMetre, spacing_mm = 4;
   std::string data_dir, field;  // empty field: no file
 };
@@ -153,8 +153,9 @@ absl::Status WriteField(const std::vector<LungMotion>& motions, const LungsOptio
 // The lungs of a person's scene, which boundary modes move: their breath is known without running it.
 absl::StatusOr<std::vector<LungsOfBreath>> ReadModes(const Model& model, const v1::Parameters& settings,
                                                      const LungsOptions& options) {
-  if (options.glued) {
-    return absl::FailedPreconditionError("the motion of these lungs' walls is prescribed: --glued changes nothing");
+  if (options.glued || options.weightless || options.unfilled) {
+    return absl::FailedPreconditionError(
+        "the motion of these lungs' walls is prescribed: --glued, --weightless and --unfilled change nothing");
   }
   std::vector<LungsOfBreath> breaths;
   const auto presets = options.presets.empty() ? std::vector<std::string>{""} : options.presets;
@@ -185,7 +186,8 @@ absl::StatusOr<std::vector<LungsOfBreath>> ReadBreaths(const Context& context, c
   if (!subject.ok()) return subject.status();
   LungElasticity elasticity = {.edge = options.edge_mm / kMillimetresAMetre};
   if (options.glued) elasticity.tangential = elasticity.contact;
-  const auto lungs = physiology::BreathingLungs::Make(**subject, elasticity);
+  const physiology::LungCauses causes = {.weight = !options.weightless, .space = !options.unfilled};
+  const auto lungs = physiology::BreathingLungs::Make(**subject, elasticity, causes);
   if (!lungs.ok()) return lungs.status();
   std::vector<LungsOfBreath> breaths;
   const auto presets = options.presets.empty() ? std::vector<std::string>{""} : options.presets;
@@ -286,6 +288,11 @@ CommandFunction SetUpLungs(CLI::App& command) {
       ->check(NumberIn(5, 50))
       ->capture_default_str();
   command.add_flag("--glued", options->glued, "glue the lungs to what surrounds them, for comparison: they slide");
+  command.add_flag("--weightless", options->weightless,
+                   "take the lungs' weight away, for comparison: it makes dependent tissue softer");
+  command.add_flag(
+      "--unfilled", options->unfilled,
+      "let the lungs follow what touches them at rest alone, for comparison: they fill the space that opens");
   AddDataFolder(command, options->data_dir);
   return Bind(&Lungs, options);
 }

@@ -4,41 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <vector>
 
 #include "server/mesh/topology.h"
+#include "server/physiology/diaphragm_border.h"
 
 namespace phrenic::physiology {
 namespace {
 
 constexpr int kParts = 8;       // into which an edge of the wall is divided where the border cuts it
 constexpr double kFlat = 1e-3;  // [m]
-
-// The border of a sheet: its height as a function of the azimuth about the middle of the sheet, at rest.
-class Border {
- public:
-  explicit Border(const Mesh& sheet) {
-    const Eigen::Vector3d low = sheet.vertices.rowwise().minCoeff(), high = sheet.vertices.rowwise().maxCoeff();
-    middle_ = ((low + high) / 2).head<2>();
-    for (const int i : BoundaryVertices(sheet.triangles))
-      heights_[Azimuth(sheet.vertices.col(i))] = sheet.vertices(2, i);
-  }
-  bool exists() const { return heights_.size() > 2; }
-  Eigen::Vector3d Middle() const { return {middle_.x(), middle_.y(), 0}; }
-  double Azimuth(const Eigen::Vector3d& at) const { return std::atan2(at.y() - middle_.y(), at.x() - middle_.x()); }
-  bool IsBelow(const Eigen::Vector3d& at) const {
-    const double azimuth = Azimuth(at);
-    auto next = heights_.lower_bound(azimuth);
-    if (next == heights_.begin() || next == heights_.end()) return at.z() > heights_.begin()->second;
-    const auto last = std::prev(next);
-    const double share = (azimuth - last->first) / (next->first - last->first);
-    return at.z() > last->second + share * (next->second - last->second);
-  }
-
- private:
-  Eigen::Vector2d middle_;
-  std::map<double, double> heights_;
-};
 
 // Returns six times the signed volume of the cone over a triangle.
 double Cone(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) { return a.dot(b.cross(c)); }
@@ -50,7 +24,8 @@ double ConesOver(const ConstPoints& x, const Triangles& triangles, const Eigen::
 }
 
 // Returns the share of a triangle that lies above the border.
-double ShareAbove(const Border& border, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+double ShareAbove(const DiaphragmBorder& border, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                  const Eigen::Vector3d& c) {
   int above = 0, all = 0;
   for (int i = 0; i < kParts; ++i) {
     for (int j = 0; i + j < kParts; ++j, ++all) {
@@ -62,7 +37,8 @@ double ShareAbove(const Border& border, const Eigen::Vector3d& a, const Eigen::V
 }
 
 // Returns the volume of the cones over the wall above the border, turned outward.
-double ConesOverWall(const Mesh& wall, const ConstPoints& now, const Border& border, const Eigen::Vector3d& tip) {
+double ConesOverWall(const Mesh& wall, const ConstPoints& now, const DiaphragmBorder& border,
+                     const Eigen::Vector3d& tip) {
   double above = 0, all = 0;
   for (const Eigen::Vector3i t : wall.triangles.colwise()) {
     const Points& rest = wall.vertices;
@@ -74,7 +50,8 @@ double ConesOverWall(const Mesh& wall, const ConstPoints& now, const Border& bor
 }
 
 // Returns the volume of the cones over the polygon of the wall's highest vertices.
-double ConesOverTop(const Mesh& wall, const ConstPoints& now, const Border& border, const Eigen::Vector3d& tip) {
+double ConesOverTop(const Mesh& wall, const ConstPoints& now, const DiaphragmBorder& border,
+                    const Eigen::Vector3d& tip) {
   const double top = wall.vertices.row(2).maxCoeff();
   std::map<double, Eigen::Vector3d> ring;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -98,7 +75,7 @@ double ConesOverTop(const Mesh& wall, const ConstPoints& now, const Border& bord
 double CavityGrowth(const Model& model, const Parts& parts, const State& from, const State& to) {
   if (parts.wall < 0 || parts.muscle < 0) return kNone;
   const Mesh &sheet = model.bodies[parts.muscle].mesh, &wall = model.bodies[parts.wall].mesh;
-  const Border border(sheet);
+  const DiaphragmBorder border(sheet);
   if (!border.exists()) return kNone;
   const Eigen::Vector3d tip = border.Middle() + Eigen::Vector3d(0, 0, sheet.vertices.row(2).minCoeff());
   const double up = ConesOver(sheet.vertices, sheet.triangles, tip) < 0 ? -1 : 1;

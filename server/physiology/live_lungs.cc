@@ -1,10 +1,12 @@
 #include "server/physiology/live_lungs.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/breathing/posture.h"
 #include "server/mechanics/motions/lung_modes.h"
-#include "server/physiology/lung_breath.h"
 #include "server/physiology/parts.h"
 
 namespace phrenic::physiology {
@@ -22,36 +24,47 @@ absl::Status CheckSize(const Model& model, const std::vector<int>& lungs) {
                                                     kMostTriangles, " in all: make their surfaces coarser"));
 }
 
+// Returns the place of a posture in kPostures; that of the supine one if it is not said.
+size_t IndexOf(v1::Posture posture) {
+  const auto* const found = std::find(kPostures.begin(), kPostures.end(), posture);
+  return found == kPostures.end() ? 0 : static_cast<size_t>(found - kPostures.begin());
+}
+
 }  // namespace
 
-absl::Status LiveLungs::Add(int body, const StopCheck& stop) {
-  const BodyModel& lung = model_.bodies[static_cast<size_t>(body)];
-  const absl::StatusOr<LungTissue> tissue = LungTissue::Make(lung.mesh, {}, stop);
-  if (!tissue.ok()) return tissue.status();
-  LungSurroundings surroundings(model_, sheet_, wall_, *tissue);
-  if (stop.Stopped()) return stop.status();
-  absl::StatusOr<LungResponses> responses = LungResponses::Make(*tissue, surroundings.neighbours(), stop);
-  if (!responses.ok()) return responses.status();
-  Add(body, tissue->box(), *std::move(responses), std::move(surroundings));
+absl::Status LiveLungs::AddDriven(const Parts& parts, const StopCheck& stop) {
+  std::vector<LungTissue> tissues;
+  for (const int body : parts.lungs) {
+    absl::StatusOr<LungTissue> tissue = LungTissue::Make(model_.bodies[static_cast<size_t>(body)].mesh, {}, stop);
+    if (!tissue.ok()) return tissue.status();
+    tissues.push_back(*std::move(tissue));
+  }
+  drive_.emplace(model_, parts, tissues);
+  std::vector<LungWeight> weights;
+  weights.reserve(kPostures.size());
+  for (const v1::Posture posture : kPostures) weights.push_back(drive_->WeightIn(posture));
+  for (size_t i = 0; i < tissues.size(); ++i) {
+    if (stop.Stopped()) return stop.status();
+    auto responses = LungResponses::Make(tissues[i], drive_->surroundings(i).neighbours(), weights, stop);
+    if (!responses.ok()) return responses.status();
+    Add(parts.lungs[i], tissues[i].box(), *std::move(responses));
+  }
   return absl::OkStatus();
 }
 
-void LiveLungs::Add(int body, const Eigen::AlignedBox3d& box, LungResponses responses,
-                    std::optional<LungSurroundings> surroundings) {
+void LiveLungs::Add(int body, const Eigen::AlignedBox3d& box, LungResponses responses) {
   const RegionWeights weights = WeightsOfRegions(responses.grid(), box);
   const Eigen::MatrixXd& shapes = responses.shapes();
   Eigen::MatrixXd caudal = weights.caudal * shapes, gained = weights.gained * shapes;
   const Eigen::RowVectorXd volume = weights.volume * shapes;
-  lungs_.push_back({body, model_.bodies[static_cast<size_t>(body)].name, std::move(responses), std::move(surroundings),
-                    std::move(caudal), std::move(gained), volume});
+  lungs_.push_back({body, model_.bodies[static_cast<size_t>(body)].name, std::move(responses), std::move(caudal),
+                    std::move(gained), volume});
 }
 
 absl::StatusOr<LiveLungs> LiveLungs::Make(const Model& model, const StopCheck& stop) {
+  LiveLungs lungs(model);
   if (const LungModes* modes = LungModes::Find(model)) {
-    LiveLungs lungs(model, -1, -1);
-    for (const LungModes::Inside& lung : modes->insides()) {
-      lungs.Add(lung.body, lung.box, {lung.grid, lung.shapes}, std::nullopt);
-    }
+    for (const LungModes::Inside& lung : modes->insides()) lungs.Add(lung.body, lung.box, {lung.grid, lung.shapes});
     return lungs;
   }
   const absl::StatusOr<Parts> parts = FindParts(model);
@@ -60,27 +73,40 @@ absl::StatusOr<LiveLungs> LiveLungs::Make(const Model& model, const StopCheck& s
         "the scene lacks lungs, a simulated diaphragm or an inner wall of the cage, so that nothing moves lung tissue");
   }
   if (absl::Status status = CheckSize(model, parts->lungs); !status.ok()) return status;
-  LiveLungs lungs(model, parts->muscle, parts->wall);
-  for (const int body : parts->lungs) {
-    if (absl::Status added = lungs.Add(body, stop); !added.ok()) return added;
-  }
+  if (absl::Status added = lungs.AddDriven(*parts, stop); !added.ok()) return added;
   return lungs;
 }
 
+std::vector<Eigen::VectorXd> LiveLungs::AmplitudesAt(const State& state, const v1::Parameters& parameters) const {
+  std::vector<Eigen::VectorXd> amplitudes;
+  if (!drive_) {
+    const EvalContext at = MakeEvalContext(model_, parameters, state, {});
+    for (size_t i = 0; i < lungs_.size(); ++i) amplitudes.emplace_back(LungModes::AmplitudesAt(at));
+    return amplitudes;
+  }
+  const LungDrive::Moment moment = drive_->At(state, parameters);
+  const size_t weight = IndexOf(parameters.posture());
+  std::array<double, 2> followed = {}, pressed = {};
+  for (size_t i = 0; i < lungs_.size(); ++i) {
+    const Lung& lung = lungs_[i];
+    amplitudes.push_back(lung.responses.Amplitudes(moment.displacement[i], weight));
+    followed[drive_->side(i)] += lung.volume * amplitudes.back();
+    pressed[drive_->side(i)] += lung.volume * lung.responses.PerPressure(weight);
+  }
+  const std::array<double, 2> pressures = FillingPressures(moment.space, followed, pressed);
+  for (size_t i = 0; i < lungs_.size(); ++i) {
+    amplitudes[i] += pressures[drive_->side(i)] * lungs_[i].responses.PerPressure(weight);
+  }
+  return amplitudes;
+}
+
 std::vector<LungMoment> LiveLungs::At(const State& state, const v1::Parameters& parameters) const {
-  const bool by_modes = sheet_ < 0;
-  const Points sheet = by_modes ? Points(3, 0) : Placed(model_, state, sheet_);
-  const Points wall = by_modes ? Points(3, 0) : Placed(model_, state, wall_);
+  const std::vector<Eigen::VectorXd> amplitudes = AmplitudesAt(state, parameters);
   std::vector<LungMoment> moments;
-  for (const Lung& lung : lungs_) {
+  for (size_t i = 0; i < lungs_.size(); ++i) {
+    const Lung& lung = lungs_[i];
     LungMoment& moment = moments.emplace_back();
-    if (lung.surroundings) {
-      const double follows =
-          FollowsSurroundings(model_.bodies[static_cast<size_t>(lung.body)].anatomy.side(), parameters);
-      moment.amplitudes = follows * lung.responses.Amplitudes(lung.surroundings->Displacement(state, sheet, wall));
-    } else {
-      moment.amplitudes = LungModes::AmplitudesAt(MakeEvalContext(model_, parameters, state, {}));
-    }
+    moment.amplitudes = amplitudes[i];
     moment.volume = lung.volume * moment.amplitudes;
     const Eigen::VectorXd caudal = lung.caudal * moment.amplitudes, gained = lung.gained * moment.amplitudes;
     for (size_t r = 0; r < kLungRegions; ++r) {

@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "server/mechanics/lungs/lung_responses.h"
+#include "server/physiology/lung_drive.h"
 #include "server/physiology/lung_regions.h"
 
 namespace phrenic::physiology {
@@ -35,31 +36,30 @@ class LiveLungs {
     int body;  // in Model::bodies
     std::string name;
     LungResponses responses;
-    std::optional<LungSurroundings> surroundings;  // none: LungModes moves the lung
     // Of its shapes: RegionWeights times LungResponses::shapes().
     Eigen::MatrixXd caudal, gained;
     Eigen::RowVectorXd volume;
   };
 
-  // Factorises and reduces both lungs: 1 to 2 s. Of lungs that LungModes moves (persons' scenes), the tissue is exactly
-  // theirs, at once. FAILED_PRECONDITION if the scene has neither these nor lungs, a simulated diaphragm and an inner
-  // wall of the cage; as LungTissue::Make; the status of `stop`.
+  // Factorises and reduces both lungs under their weight in each posture: 3 to 5 s. Of lungs that LungModes moves
+  // (persons' scenes), the tissue is exactly theirs, at once. FAILED_PRECONDITION if the scene has neither these nor
+  // lungs, a simulated diaphragm and an inner wall of the cage; as LungTissue::Make; the status of `stop`.
   static absl::StatusOr<LiveLungs> Make(const Model& model, const StopCheck& stop = {});
 
   const std::vector<Lung>& lungs() const { return lungs_; }
-  // Returns each lung in a state. A lung follows its surroundings by 1 - the pneumothorax of its side.
+  // Returns each lung in a state, moved as lung_drive.h says.
   std::vector<LungMoment> At(const State& state, const v1::Parameters& parameters) const;
   // Returns the tissue at a point, whose place is where it is at rest [m]; none outside the lungs. `moments` are of At.
   std::optional<TissueReading> Read(const std::vector<LungMoment>& moments, const Eigen::Vector3d& point) const;
 
  private:
-  LiveLungs(const Model& model, int sheet, int wall) : model_(model), sheet_(sheet), wall_(wall) {}
-  absl::Status Add(int body, const StopCheck& stop);
-  void Add(int body, const Eigen::AlignedBox3d& box, LungResponses responses,
-           std::optional<LungSurroundings> surroundings);
+  explicit LiveLungs(const Model& model) : model_(model) {}
+  absl::Status AddDriven(const Parts& parts, const StopCheck& stop);
+  void Add(int body, const Eigen::AlignedBox3d& box, LungResponses responses);
+  std::vector<Eigen::VectorXd> AmplitudesAt(const State& state, const v1::Parameters& parameters) const;
 
   const Model& model_;
-  int sheet_, wall_;  // bodies; -1: LungModes moves the lungs
+  std::optional<LungDrive> drive_;  // none: LungModes moves the lungs
   std::vector<Lung> lungs_;
 };
 

@@ -16,11 +16,11 @@ struct MeanOf {
   double Value() const { return count > 0 ? sum / count : kNone; }
 };
 
-double VolumeGained(const LungMotion& lung) {
+double VolumeGained(const LungTissue& tissue, const Points& nodes) {
   double volume = 0;
-  for (Eigen::Index p = 0; p < lung.tissue.areas().size(); ++p) {
-    const Eigen::Vector3d shift = lung.tissue.DisplacementAt(lung.nodes, lung.tissue.points().col(p));
-    volume += lung.tissue.areas()[p] * lung.tissue.normals().col(p).dot(shift);
+  for (Eigen::Index p = 0; p < tissue.areas().size(); ++p) {
+    const Eigen::Vector3d shift = tissue.DisplacementAt(nodes, tissue.points().col(p));
+    volume += tissue.areas()[p] * tissue.normals().col(p).dot(shift);
   }
   return volume;
 }
@@ -54,7 +54,7 @@ LungReading ReadLung(const LungMotion& lung, const LungField& field) {
     sums.Add(at, -field.displacement(2, i), field.ventilation[i]);
   }
   LungReading reading;
-  reading.volume = VolumeGained(lung);
+  reading.volume = VolumeGained(lung.tissue, lung.nodes);
   for (int r = 0; r < kLungRegions; ++r) {
     reading.caudal[r] = sums.caudal[r].Value();
     reading.gained[r] = sums.gained[r].Value();
@@ -66,42 +66,50 @@ LungReading ReadLung(const LungMotion& lung, const LungField& field) {
 
 }  // namespace
 
-double FollowsSurroundings(v1::Side side, const v1::Parameters& parameters) {
-  return 1 - (side == v1::SIDE_LEFT ? parameters.pneumothorax_left() : parameters.pneumothorax_right());
-}
-
-absl::StatusOr<BreathingLungs> BreathingLungs::Make(const Subject& subject, const LungElasticity& elasticity) {
+absl::StatusOr<BreathingLungs> BreathingLungs::Make(const Subject& subject, const LungElasticity& elasticity,
+                                                    LungCauses causes) {
   const Parts& parts = subject.parts;
   if (parts.lungs.empty() || parts.muscle < 0 || parts.wall < 0) {
     return absl::FailedPreconditionError(
         "the scene lacks lungs, a deformable diaphragm or an inner wall of the cage, so that nothing moves lung "
         "tissue");
   }
-  BreathingLungs lungs;
+  std::vector<std::string> names;
+  std::vector<LungTissue> tissues;
   for (const int b : parts.lungs) {
     const BodyModel& body = subject.model.bodies[b];
     absl::StatusOr<LungTissue> tissue = LungTissue::Make(body.mesh, elasticity);
     if (!tissue.ok()) return tissue.status();
-    const LungSurroundings surroundings(subject.model, parts.muscle, parts.wall, *tissue);
-    lungs.lungs_.push_back({body.name, body.anatomy.side(), *std::move(tissue), surroundings});
+    names.push_back(body.name);
+    tissues.push_back(*std::move(tissue));
   }
-  return lungs;
+  LungDrive drive(subject.model, parts, tissues, causes);
+  return BreathingLungs(std::move(names), std::move(tissues), std::move(drive));
 }
 
 std::vector<LungMotion> BreathingLungs::Motions(const Recording& breath) const {
+  const LungDrive::Moment base = drive_.At(breath.base, breath.parameters),
+                          peak = drive_.At(breath.peak, breath.parameters);
+  const LungWeight weight = drive_.WeightIn(breath.parameters.posture());
+  std::vector<PressedLung> lungs;
+  std::array<double, 2> followed = {}, pressed = {};
+  for (size_t i = 0; i < tissues_.size(); ++i) {
+    lungs.push_back(tissues_[i].Under(weight).SolvePressed(peak.displacement[i] - base.displacement[i]));
+    followed[drive_.side(i)] += VolumeGained(tissues_[i], lungs[i].followed);
+    pressed[drive_.side(i)] += VolumeGained(tissues_[i], lungs[i].pressed);
+  }
+  const std::array<double, 2> opened = {peak.space[0] - base.space[0], peak.space[1] - base.space[1]};
+  const std::array<double, 2> pressures = FillingPressures(opened, followed, pressed);
   std::vector<LungMotion> motions;
-  for (const Lung& lung : lungs_) {
-    const double follows = FollowsSurroundings(lung.side, breath.parameters);
-    const Points moved =
-        follows * (lung.surroundings.Displacement(breath.peak) - lung.surroundings.Displacement(breath.base));
-    motions.push_back({lung.tissue, lung.tissue.SolveVectors(moved)});
+  for (size_t i = 0; i < tissues_.size(); ++i) {
+    motions.push_back({tissues_[i], lungs[i].followed + pressures[drive_.side(i)] * lungs[i].pressed});
   }
   return motions;
 }
 
 std::vector<LungReading> BreathingLungs::Readings(const std::vector<LungMotion>& motions) const {
   std::vector<LungReading> readings = ReadingsOf(motions);
-  for (size_t i = 0; i < readings.size(); ++i) readings[i].lung = lungs_[i].name;
+  for (size_t i = 0; i < readings.size(); ++i) readings[i].lung = names_[i];
   return readings;
 }
 

@@ -5,12 +5,13 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "server/mechanics/lungs/lung_field.h"
-#include "server/mechanics/lungs/lung_surroundings.h"
 #include "server/physiology/bones.h"
+#include "server/physiology/lung_drive.h"
 #include "server/physiology/lung_regions.h"
 #include "server/physiology/recording.h"
 
@@ -26,31 +27,27 @@ struct LungReading {
   double upwards = 0;                            // part of the volume that moves up, 0..1
 };
 
-// Returns how far the lung of a side follows its surroundings, 0..1: not at all where air of a pneumothorax is between.
-double FollowsSurroundings(v1::Side side, const v1::Parameters& parameters);
-
 // The lungs of a scene as tissue. Refers to the subject's model. Immutable, thread-safe.
 class BreathingLungs {
  public:
   // FAILED_PRECONDITION if the scene lacks lungs, a simulated diaphragm or an inner wall; as LungTissue::Make.
-  static absl::StatusOr<BreathingLungs> Make(const Subject& subject, const LungElasticity& elasticity);
+  static absl::StatusOr<BreathingLungs> Make(const Subject& subject, const LungElasticity& elasticity,
+                                             LungCauses causes = {});
 
-  // Returns the motion of each lung in a breath. A lung follows its surroundings by 1 - the pneumothorax of its side:
-  // air between them transmits nothing.
+  // Returns the motion of each lung in a breath (lung_drive.h). Factorises each lung.
   std::vector<LungMotion> Motions(const Recording& breath) const;
   // Returns the readings of these motions.
   std::vector<LungReading> Readings(const std::vector<LungMotion>& motions) const;
   // The part of the surface of a lung that touches a neighbour, 0..1.
-  double Share(size_t lung, LungNeighbour neighbour) const { return lungs_[lung].surroundings.Share(neighbour); }
+  double Share(size_t lung, LungNeighbour neighbour) const { return drive_.surroundings(lung).Share(neighbour); }
 
  private:
-  struct Lung {
-    std::string name;
-    v1::Side side;
-    LungTissue tissue;
-    LungSurroundings surroundings;
-  };
-  std::vector<Lung> lungs_;
+  BreathingLungs(std::vector<std::string> names, std::vector<LungTissue> tissues, LungDrive drive)
+      : names_(std::move(names)), tissues_(std::move(tissues)), drive_(std::move(drive)) {}
+
+  std::vector<std::string> names_;
+  std::vector<LungTissue> tissues_;
+  LungDrive drive_;
 };
 
 // Returns the motion of each lung that LungModes moves, from the end of expiration to that of inspiration. Empty for a

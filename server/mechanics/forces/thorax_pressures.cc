@@ -8,18 +8,21 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/mechanics/breathing/expiratory_muscles.h"
+#include "server/mechanics/breathing/posture.h"
 
 namespace phrenic {
 namespace {
 
-constexpr std::array<Force::Output, 8> kThoraxOutputs = {{{"volume", "m^3"},
-                                                          {"flow", "m^3/s"},
-                                                          {"pleural_pressure_right", "Pa"},
-                                                          {"pleural_pressure_left", "Pa"},
-                                                          {"abdominal_pressure", "Pa"},
-                                                          {"transdiaphragmatic_pressure", "Pa"},
-                                                          {"alveolar_pressure", "Pa"},
-                                                          {"displaced_volume", "m^3"}}};
+constexpr std::array<Force::Output, 10> kThoraxOutputs = {{{"volume", "m^3"},
+                                                           {"flow", "m^3/s"},
+                                                           {"pleural_pressure_right", "Pa"},
+                                                           {"pleural_pressure_left", "Pa"},
+                                                           {"abdominal_pressure", "Pa"},
+                                                           {"transdiaphragmatic_pressure", "Pa"},
+                                                           {"alveolar_pressure", "Pa"},
+                                                           {"displaced_volume", "m^3"},
+                                                           {"space_right", "m^3"},
+                                                           {"space_left", "m^3"}}};
 constexpr double kLeastRoom = 0.02;  // of a lung's room: the curve continues along its tangent below
 
 constexpr double kAtmosphere = 101325;  // [Pa]
@@ -107,25 +110,9 @@ void ThoraxPressures::AddVertices(const std::vector<std::array<std::vector<std::
 }
 
 LinearField ThoraxPressures::Weight(const v1::Parameters& parameters) const {
-  Eigen::Vector3d slope = ToEigen(scene_.abdomen().weight()), from = centre_;
-  const double weight = slope.norm();
-  switch (parameters.posture()) {
-    case v1::POSTURE_UPRIGHT:
-      slope = -weight * Eigen::Vector3d::UnitZ();
-      from.z() -= scene_.abdomen().upright_level();
-      break;
-    case v1::POSTURE_PRONE:
-      slope = -slope;
-      break;
-    case v1::POSTURE_RIGHT_SIDE:
-      slope = -weight * Eigen::Vector3d::UnitX();
-      break;
-    case v1::POSTURE_LEFT_SIDE:
-      slope = weight * Eigen::Vector3d::UnitX();
-      break;
-    default:
-      break;
-  }
+  const Eigen::Vector3d slope = DownIn(parameters.posture(), ToEigen(scene_.abdomen().weight()));
+  Eigen::Vector3d from = centre_;
+  if (parameters.posture() == v1::POSTURE_UPRIGHT) from.z() -= scene_.abdomen().upright_level();
   return {{slope.x(), slope.y(), slope.z()}, slope.dot(from)};
 }
 
@@ -444,8 +431,12 @@ double ThoraxPressures::Read(size_t output, const EvalContext& at) const {
     case 6:
       return AirwayPressure(at, now) - now.common * Flow(now) -
              (now.peripheral[kRight] * now.flow[kRight] + now.peripheral[kLeft] * now.flow[kLeft]);
-    default:
+    case 7:
       return now.displaced;
+    case 8:
+      return now.volume[kRight] + at.parameters.pleural_fluid_right();
+    default:
+      return now.volume[kLeft] + at.parameters.pleural_fluid_left();
   }
 }
 

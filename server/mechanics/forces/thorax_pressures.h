@@ -53,7 +53,8 @@ class ThoraxPressures final : public Force {
   bool advances_scalars() const override { return true; }
   double Energy(const EvalContext& at) const override;
   // Volume of both lungs, flow into them; pleural pressure, right and left; abdominal, transdiaphragmatic and alveolar
-  // pressure; volume displaced by the abdominal wall.
+  // pressure; volume displaced by the abdominal wall; growth from rest of the space that the lung and the fluid of each
+  // side fill.
   std::span<const Output> outputs() const override;
   double Read(size_t output, const EvalContext& at) const override;
 

@@ -9,10 +9,11 @@ namespace phrenic {
 namespace {
 
 constexpr int kMostDegree = 5;
-constexpr double kRidge = 1e-9;         // of the mean diagonal, in least squares
-constexpr int kDegreeOfVertical = 5;    // of the diaphragm's vertical displacement, in x and y
-constexpr int kDegreeOfHorizontal = 2;  // of its horizontal one
-constexpr int kDegreeOfWall = 3;        // of each part of the wall's, in x, y and z
+constexpr double kRidge = 1e-9;          // of the mean diagonal, in least squares
+constexpr int kDegreeOfVertical = 5;     // of the diaphragm's vertical displacement, in x and y
+constexpr int kDegreeOfHorizontal = 2;   // of its horizontal one
+constexpr int kDegreeOfWall = 3;         // of each part of the wall's, in x, y and z
+constexpr int kDegreeOfMediastinum = 1;  // of its sideways one, in x and y
 
 using Legendre = std::array<double, kMostDegree + 1>;
 
@@ -44,7 +45,7 @@ std::vector<Candidate> AllCandidates() {
   AddCandidates(LungNeighbour::kDiaphragm, 1, kDegreeOfHorizontal, false, candidates);
   AddCandidates(LungNeighbour::kDiaphragm, 2, kDegreeOfVertical, false, candidates);
   for (int axis = 0; axis < 3; ++axis) AddCandidates(LungNeighbour::kWall, axis, kDegreeOfWall, true, candidates);
-  AddCandidates(LungNeighbour::kMediastinum, 0, 0, false, candidates);
+  AddCandidates(LungNeighbour::kMediastinum, 0, kDegreeOfMediastinum, false, candidates);
   return candidates;
 }
 
@@ -74,8 +75,13 @@ Eigen::MatrixXd LeastSquares(const Eigen::MatrixXd& g, const Eigen::VectorXd& ar
   return normal.ldlt().solve(weighted);
 }
 
-// Returns the combinations (candidates x shapes) that move the tissue most, by the responses (3 nodes x candidates).
-Eigen::MatrixXd Leading(const Eigen::MatrixXd& responses) {
+// The leading eigenvectors of the Gram matrix of several responses (3 nodes x columns).
+struct LeadingCombinations {
+  Eigen::MatrixXd factors;  // all columns x shapes
+  Eigen::VectorXd squares;  // |shape|^2
+};
+
+LeadingCombinations LeadingOf(const Eigen::MatrixXd& responses) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(responses.transpose() * responses);
   const double enough = (1 - LungResponses::kLeftOut) * gram.eigenvalues().sum();
   Eigen::Index count = 0;
@@ -83,7 +89,16 @@ Eigen::MatrixXd Leading(const Eigen::MatrixXd& responses) {
   for (double sum = 0; count < most && sum < enough; ++count) {
     sum += gram.eigenvalues()[gram.eigenvalues().size() - 1 - count];
   }
-  return gram.eigenvectors().rightCols(count);
+  return {gram.eigenvectors().rightCols(count), gram.eigenvalues().tail(count)};
+}
+
+Eigen::MatrixXd SideBySide(const std::vector<Eigen::MatrixXd>& parts) {
+  Eigen::MatrixXd all(parts[0].rows(), 0);
+  for (const Eigen::MatrixXd& part : parts) {
+    all.conservativeResize(Eigen::NoChange, all.cols() + part.cols());
+    all.rightCols(part.cols()) = part;
+  }
+  return all;
 }
 
 }  // namespace
@@ -101,27 +116,42 @@ LungResponses::LungResponses(const LungTissue& tissue, const std::vector<LungNei
   normals_ = tissue.normals()(Eigen::all, touching_);
 }
 
+void LungResponses::Reduce(const std::vector<Eigen::MatrixXd>& under_weights, const Eigen::MatrixXd& fit) {
+  const Eigen::MatrixXd all = SideBySide(under_weights);
+  const LeadingCombinations leading = LeadingOf(all);
+  shapes_ = all * leading.factors;
+  for (const Eigen::MatrixXd& responses : under_weights) {
+    const Eigen::MatrixXd in_shapes = leading.squares.cwiseInverse().asDiagonal() * (shapes_.transpose() * responses);
+    responses_.push_back({in_shapes.leftCols(fit.rows()) * fit, in_shapes.rightCols<1>()});
+  }
+}
+
 absl::StatusOr<LungResponses> LungResponses::Make(const LungTissue& tissue,
-                                                  const std::vector<LungNeighbour>& neighbours, const StopCheck& stop) {
+                                                  const std::vector<LungNeighbour>& neighbours,
+                                                  const std::vector<LungWeight>& weights, const StopCheck& stop) {
   LungResponses lung(tissue, neighbours);
   std::vector<bool> free;
   free.reserve(neighbours.size());
   for (const LungNeighbour neighbour : neighbours) free.push_back(neighbour == LungNeighbour::kNone);
   const Eigen::MatrixXd g = NormalParts(tissue, neighbours);
-  const absl::StatusOr<Eigen::MatrixXd> responses = tissue.SolveEach(g, free, stop);
-  if (!responses.ok()) return responses.status();
-  const Eigen::MatrixXd leading = Leading(*responses);
-  lung.shapes_ = *responses * leading;
-  lung.projection_ = leading.transpose() * LeastSquares(g, tissue.areas())(Eigen::all, lung.touching_);
+  Eigen::MatrixXd with_pressure(g.rows(), g.cols() + 1);
+  with_pressure << g, Eigen::VectorXd::Ones(g.rows());
+  std::vector<Eigen::MatrixXd> under_weights;
+  for (const LungWeight& weight : weights) {
+    absl::StatusOr<Eigen::MatrixXd> responses = tissue.Under(weight).SolveEach(with_pressure, free, stop);
+    if (!responses.ok()) return responses.status();
+    under_weights.push_back(*std::move(responses));
+  }
+  lung.Reduce(under_weights, LeastSquares(g, tissue.areas())(Eigen::all, lung.touching_));
   return lung;
 }
 
-Eigen::VectorXd LungResponses::Amplitudes(const ConstPoints& displacement) const {
+Eigen::VectorXd LungResponses::Amplitudes(const ConstPoints& displacement, size_t weight) const {
   Eigen::VectorXd g(static_cast<Eigen::Index>(touching_.size()));
   for (Eigen::Index i = 0; i < g.size(); ++i) {
     g[i] = normals_.col(i).dot(displacement.col(touching_[static_cast<size_t>(i)]));
   }
-  return projection_ * g;
+  return responses_[weight].projection * g;
 }
 
 Points LungResponses::Nodes(const Eigen::VectorXd& amplitudes) const {

@@ -28,6 +28,10 @@ struct Surface {
     return aligned && ahead ? near : SurfacePoint();
   }
 
+  bool IsWithinReach(const Eigen::Vector3d& point) const {
+    return tree.Nearest(mesh.vertices, boxes, point, kContactReach).triangle >= 0;
+  }
+
   const Mesh& mesh;
   TriangleTree tree;
   TriangleTree::Boxes boxes;
@@ -39,7 +43,7 @@ bool IsInCupola(const Eigen::Vector3d& point, double top_of_wall) { return point
 }  // namespace
 
 LungSurroundings::LungSurroundings(const Model& model, int sheet, int wall, const LungTissue& tissue)
-    : model_(model), bodies_{sheet, wall}, areas_(tissue.areas()) {
+    : model_(model), bodies_{sheet, wall}, areas_(tissue.areas()), lateral_(tissue.points().row(0)) {
   Bind(tissue, model.bodies[sheet].mesh, model.bodies[wall].mesh);
 }
 
@@ -51,11 +55,15 @@ void LungSurroundings::Bind(const LungTissue& tissue, const Mesh& sheet, const M
     std::array<SurfacePoint, 2> near = {surfaces[0].Facing(point, normal), surfaces[1].Facing(point, normal)};
     if (IsInCupola(point, top_of_wall)) near[1] = surfaces[1].tree.Nearest(wall.vertices, surfaces[1].boxes, point, 1);
     const size_t nearest = near[0].squared <= near[1].squared ? 0 : 1;
-    if (near[nearest].triangle >= 0) {
+    const bool at_recess = nearest == 0 && surfaces[1].IsWithinReach(point);
+    if (near[nearest].triangle >= 0 && at_recess) {
+      neighbours_.push_back(LungNeighbour::kNone);
+    } else if (near[nearest].triangle >= 0) {
       contacts_[nearest].push_back({p, surfaces[nearest].tree.triangle(near[nearest].triangle), near[nearest].weights});
       neighbours_.push_back(static_cast<LungNeighbour>(nearest));
     } else if (-side * normal.x() > kInwards) {
       mediastinal_area_ += areas_[p] * std::abs(normal.x());
+      beside_mediastinum_ -= areas_[p] * normal.x() * point.x();
       neighbours_.push_back(LungNeighbour::kMediastinum);
     } else {
       neighbours_.push_back(LungNeighbour::kNone);
@@ -70,16 +78,17 @@ double LungSurroundings::MediastinalShift(const State& state) const {
   return 0;
 }
 
-Points LungSurroundings::Displacement(const State& state) const {
+Points LungSurroundings::Displacement(const State& state, double narrowing) const {
   std::array<Points, 2> placed;
   for (size_t of = 0; of < placed.size(); ++of) {
     placed[of].resize(3, model_.bodies[bodies_[of]].mesh.vertices.cols());
     PlaceBody(model_, state, bodies_[of], placed[of]);
   }
-  return Displacement(state, placed[0], placed[1]);
+  return Displacement(state, placed[0], placed[1], narrowing);
 }
 
-Points LungSurroundings::Displacement(const State& state, const Points& sheet, const Points& wall) const {
+Points LungSurroundings::Displacement(const State& state, const Points& sheet, const Points& wall,
+                                      double narrowing) const {
   Points displacement = Points::Constant(3, areas_.size(), std::numeric_limits<double>::quiet_NaN());
   const std::array<const Points*, 2> placed = {&sheet, &wall};
   for (size_t of = 0; of < contacts_.size(); ++of) {
@@ -93,9 +102,10 @@ Points LungSurroundings::Displacement(const State& state, const Points& sheet, c
       displacement.col(contact.point) = shift;
     }
   }
-  const Eigen::Vector3d sideways(MediastinalShift(state), 0, 0);
+  const double sideways = MediastinalShift(state);
   for (Eigen::Index p = 0; p < areas_.size(); ++p) {
-    if (neighbours_[p] == LungNeighbour::kMediastinum) displacement.col(p) = sideways;
+    if (neighbours_[p] != LungNeighbour::kMediastinum) continue;
+    displacement.col(p) = (sideways - narrowing * lateral_[p]) * Eigen::Vector3d::UnitX();
   }
   return displacement;
 }

@@ -1,6 +1,7 @@
 // What touches a lung, and how it moves: the diaphragm below, the inner wall of the cage around and above, the
 // mediastinum inside. Each boundary point of the tissue that faces one of them closely at rest follows it along the
-// normal; the others, at the margin in the costophrenic recess, are free.
+// normal. The others are free: the margin at the mouth of the costophrenic recess, also where it faces the diaphragm,
+// because the sheet that peels off the wall there is another part of it at each moment.
 #ifndef PHRENIC_SERVER_MECHANICS_LUNGS_LUNG_SURROUNDINGS_H_
 #define PHRENIC_SERVER_MECHANICS_LUNGS_LUNG_SURROUNDINGS_H_
 
@@ -22,10 +23,12 @@ class LungSurroundings {
 
   // Returns how far what touches each boundary point is from where it is at rest (3 x points) [m]; NaN for free points.
   // A point follows the material that is nearest to it at rest. The mediastinum is shifted sideways by the coordinate
-  // "mediastinal shift" over its area.
-  Points Displacement(const State& state) const;
+  // "mediastinal shift" over its area, and shrinks towards the midline by the part `narrowing` of its width [1].
+  Points Displacement(const State& state, double narrowing = 0) const;
   // The same for placed bodies: the vertices of the sheet and of the wall [m] in the state.
-  Points Displacement(const State& state, const Points& sheet, const Points& wall) const;
+  Points Displacement(const State& state, const Points& sheet, const Points& wall, double narrowing = 0) const;
+  // The volume that the lung gains per narrowing of the mediastinum [m^3].
+  double BesideMediastinum() const { return beside_mediastinum_; }
 
   const std::vector<LungNeighbour>& neighbours() const { return neighbours_; }  // of each boundary point
   // The part of the surface that touches a neighbour, 0..1.
@@ -45,7 +48,9 @@ class LungSurroundings {
   std::vector<LungNeighbour> neighbours_;
   std::array<std::vector<Contact>, 2> contacts_;
   Eigen::VectorXd areas_;        // [m^2]
+  Eigen::RowVectorXd lateral_;   // x of each boundary point [m]
   double mediastinal_area_ = 0;  // projected along x [m^2]
+  double beside_mediastinum_ = 0;
 };
 
 }  // namespace phrenic

@@ -25,6 +25,9 @@ absl::Status CheckElasticity(const LungElasticity& e) {
   if (!IsIn(e.contact, 1e-3, 1e6)) {
     return absl::InvalidArgumentError("the contact of a lung has a stiffness of 0.001 to 1e6 moduli a metre");
   }
+  if (!(e.weight.rise.norm() <= 20) || !IsIn(e.weight.room, 0, 100)) {
+    return absl::InvalidArgumentError("the modulus of a lung rises by up to 20 a metre, and its room is 0 to 100");
+  }
   if (!IsIn(e.tangential, 0, 1e6)) {
     return absl::InvalidArgumentError("a lung's stiffness along its surface is 0 to 1e6 moduli a metre");
   }
@@ -63,6 +66,17 @@ void AddSpring(const Eigen::Vector3d& local, const Eigen::Matrix3d& spring, Bric
   for (int a = 0; a < 8; ++a) {
     for (int b = 0; b < 8; ++b) stiffness.block<3, 3>(3 * a, 3 * b) += weights[a] * weights[b] * spring;
   }
+}
+
+// Which columns are NaN, and the vectors with 0 in their place.
+std::pair<std::vector<bool>, Points> Held(const ConstPoints& displacement) {
+  std::pair<std::vector<bool>, Points> held = {{}, displacement};
+  held.first.reserve(static_cast<size_t>(displacement.cols()));
+  for (auto at : held.second.colwise()) {
+    held.first.push_back(at.hasNaN());
+    if (held.first.back()) at.setZero();
+  }
+  return held;
 }
 
 }  // namespace
@@ -110,8 +124,12 @@ Eigen::Matrix3d LungTissue::SpringOf(Eigen::Index point) const {
 LungTissue::Matrix LungTissue::Stiffness(const std::vector<bool>& free) const {
   const BrickElement element(elasticity_.edge, elasticity_.poisson);
   std::vector<BrickMatrix> bricks;
-  for (const BrickFractions& fractions : grid_.fractions())
-    bricks.push_back(element.Stiffness(fractions, kOutsideStiffness));
+  bricks.reserve(grid_.bricks().size());
+  for (size_t b = 0; b < grid_.bricks().size(); ++b) {
+    const Eigen::Vector3d middle = grid_.nodes().col(grid_.bricks()[b][0]).array() + grid_.edge() / 2;
+    const double modulus = elasticity_.weight.ModulusAt(middle);
+    bricks.push_back(modulus * element.Stiffness(grid_.fractions()[b], kOutsideStiffness));
+  }
   for (size_t p = 0; p < places_.size(); ++p) {
     if (!free[p]) AddSpring(places_[p].local, SpringOf(static_cast<Eigen::Index>(p)), bricks[places_[p].brick]);
   }
@@ -145,22 +163,34 @@ std::optional<LayeredCholesky> LungTissue::Factorise(const std::vector<bool>& fr
   return LayeredCholesky::Make(Stiffness(free), LayerStarts(), stop);
 }
 
-Points LungTissue::SolveWith(const LayeredCholesky& factors, const ConstPoints& displacement) const {
-  const Eigen::VectorXd nodes = factors.Solve(Forces(displacement));
-  return nodes.reshaped(3, grid_.nodes().cols());
+std::shared_ptr<const LayeredCholesky> LungTissue::FactorsWith(const std::vector<bool>& free,
+                                                               const StopCheck& stop) const {
+  if (factors_ != nullptr && std::find(free.begin(), free.end(), true) == free.end()) return factors_;
+  std::optional<LayeredCholesky> factors = Factorise(free, stop);  // positive definite as the first one was
+  return factors ? std::make_shared<const LayeredCholesky>(*std::move(factors)) : nullptr;
+}
+
+LungTissue LungTissue::Under(const LungWeight& weight) const {
+  LungTissue tissue = *this;
+  tissue.elasticity_.weight = weight;
+  tissue.factors_ = nullptr;
+  return tissue;
 }
 
 Points LungTissue::Solve(const Eigen::VectorXd& g) const { return SolveVectors(normals_ * g.asDiagonal()); }
 
 Points LungTissue::SolveVectors(const ConstPoints& displacement) const {
-  if (!displacement.hasNaN()) return SolveWith(*factors_, displacement);
-  std::vector<bool> free;
-  Points held = displacement;
-  for (auto at : held.colwise()) {
-    free.push_back(at.hasNaN());
-    if (free.back()) at.setZero();
-  }
-  return SolveWith(*Factorise(free, {}), held);  // positive definite as the first one was
+  const auto [free, held] = Held(displacement);
+  return FactorsWith(free, {})->Solve(Forces(held)).reshaped(3, grid_.nodes().cols());
+}
+
+PressedLung LungTissue::SolvePressed(const ConstPoints& displacement) const {
+  const auto [free, held] = Held(displacement);
+  Eigen::MatrixXd forces(3 * grid_.nodes().cols(), 2);
+  forces.col(0) = Forces(held);
+  forces.col(1) = Forces(normals_) / elasticity_.contact;  // of springs that are pulled along the normal
+  const Eigen::MatrixXd nodes = FactorsWith(free, {})->Solve(forces);
+  return {nodes.col(0).reshaped(3, grid_.nodes().cols()), nodes.col(1).reshaped(3, grid_.nodes().cols())};
 }
 
 absl::StatusOr<Eigen::MatrixXd> LungTissue::SolveEach(const Eigen::MatrixXd& g, const std::vector<bool>& free,
@@ -170,10 +200,9 @@ absl::StatusOr<Eigen::MatrixXd> LungTissue::SolveEach(const Eigen::MatrixXd& g, 
     if (stop.Stopped()) return stop.status();
     forces.col(c) = Forces(normals_ * g.col(c).asDiagonal());
   }
-  if (std::find(free.begin(), free.end(), true) == free.end()) return factors_->Solve(forces);
-  const std::optional<LayeredCholesky> factors = Factorise(free, stop);
+  const std::shared_ptr<const LayeredCholesky> factors = FactorsWith(free, stop);
   if (stop.Stopped()) return stop.status();
-  return factors->Solve(forces);  // positive definite as the first one was
+  return factors->Solve(forces);
 }
 
 absl::StatusOr<Points> LungTissue::SolveThrough(const ConstPoints& points, const ConstPoints& vectors,

@@ -1,8 +1,10 @@
 // The elastic interior of a lung that slides on what surrounds it. For a normal displacement g of the surroundings [m],
 // the displacement u of the tissue [m] minimises
 //   E = 1/2 integral sigma(u) : eps(u) dV + 1/2 integral k (n . u - g)^2 dS   [J],
-// with linear isotropic elasticity, homogeneous, and n the outward normal of the surface. The pleura transmits no
-// shear: nothing acts along the surface. The result depends on k/E and Poisson's ratio only, not on Young's modulus E.
+// with linear isotropic elasticity and n the outward normal of the surface. The pleura transmits no shear: nothing acts
+// along the surface. The result depends on k/E and Poisson's ratio only, not on Young's modulus E. The tissue is
+// homogeneous unless it has a weight (lung_weight.h), which makes E that times the modulus m; k keeps to E at the
+// middle.
 //
 // Bricks of a regular grid, of which only the parts in the lung are material (brick_grid.h); the parts outside have
 // 0.001 of its stiffness. The surface integral is a sum over the triangles' centroids. Rotations that no normal
@@ -20,6 +22,7 @@
 #include "absl/status/statusor.h"
 #include "server/mechanics/lungs/brick_grid.h"
 #include "server/mechanics/lungs/layered_cholesky.h"
+#include "server/mechanics/lungs/lung_weight.h"
 #include "server/mechanics/stop_check.h"
 #include "server/mesh/mesh.h"
 
@@ -30,6 +33,13 @@ struct LungElasticity {
   double poisson = 0.3;   // [1]
   double contact = 500;   // k/E, stiffness along the normal per area and modulus [1/m]
   double tangential = 0;  // the same along the surface [1/m]; as large as `contact`: glued
+  LungWeight weight = {};
+};
+
+// What moves a lung, as displacements of the grid's nodes (3 x nodes).
+struct PressedLung {
+  Points followed;  // by the surroundings [m]
+  Points pressed;   // by a pressure of one Young's modulus outwards on the whole surface [m]
 };
 
 // Immutable, thread-safe.
@@ -41,6 +51,9 @@ class LungTissue {
   // not face outwards, or a number is out of range; the status of `stop`.
   static absl::StatusOr<LungTissue> Make(const Mesh& surface, const LungElasticity& elasticity = {},
                                          const StopCheck& stop = {});
+
+  // Returns the same lung under another weight, without a factorisation: each of its solutions costs one.
+  LungTissue Under(const LungWeight& weight) const;
 
   // The boundary points, in the order of the surface's triangles: centroids [m], outward unit normals (zero for a
   // triangle without area), areas [m^2].
@@ -60,9 +73,11 @@ class LungTissue {
   // The same for displacements of the surroundings at the boundary points (3 x points) [m], whose part along the
   // surface acts through the tangential stiffness. The surface is free at columns with NaN.
   Points SolveVectors(const ConstPoints& displacement) const;
+  // The same, and the response to a pressure: u + p v, v the second one, is the displacement under a pressure p [E].
+  PressedLung SolvePressed(const ConstPoints& displacement) const;
   // Returns the displacement of the nodes (3 nodes x columns) for each column of normal displacements g (points x
-  // columns); the surface is free at the points that `free` marks, where g is 0. Costs a factorisation if it marks any.
-  // The status of `stop`.
+  // columns); the surface is free at the points that `free` marks, where g acts as the pressure k g. Costs a
+  // factorisation if it marks any. The status of `stop`.
   absl::StatusOr<Eigen::MatrixXd> SolveEach(const Eigen::MatrixXd& g, const std::vector<bool>& free,
                                             const StopCheck& stop = {}) const;
   // Returns the displacement u of the nodes [m] that minimises E + w/2 sum |u(x_i) - r_i|^2 for surroundings at rest:
@@ -88,7 +103,8 @@ class LungTissue {
   // Of LayeredCholesky.
   std::vector<int> LayerStarts() const;
   std::optional<LayeredCholesky> Factorise(const std::vector<bool>& free, const StopCheck& stop) const;
-  Points SolveWith(const LayeredCholesky& factors, const ConstPoints& displacement) const;
+  // The factors with free points: those that are kept if there are none. Null if stopped.
+  std::shared_ptr<const LayeredCholesky> FactorsWith(const std::vector<bool>& free, const StopCheck& stop) const;
   Eigen::Matrix3d SpringOf(Eigen::Index point) const;
 
   LungElasticity elasticity_;
@@ -98,7 +114,7 @@ class LungTissue {
   Eigen::AlignedBox3d box_;
   BrickGrid grid_;
   std::vector<BrickGrid::Place> places_;            // of the boundary points
-  std::shared_ptr<const LayeredCholesky> factors_;  // shared by copies
+  std::shared_ptr<const LayeredCholesky> factors_;  // of no free points, shared by copies; null after Under
 };
 
 }  // namespace phrenic

@@ -23,7 +23,7 @@ class LungResponsesTest : public testing::Test {
                             : z < -0.03 ? LungNeighbour::kNone
                                         : LungNeighbour::kWall);
     }
-    lung_ = std::make_unique<LungResponses>(*LungResponses::Make(*tissue_, neighbours_));
+    lung_ = std::make_unique<LungResponses>(*LungResponses::Make(*tissue_, neighbours_, {LungWeight()}));
   }
   static void TearDownTestSuite() {
     lung_.reset();
@@ -52,6 +52,20 @@ TEST_F(LungResponsesTest, MovesAsTheFullSolutionWhereTheSurroundingsMoveSmoothly
   const Points full = tissue_->SolveVectors(Breath());
   const Points reduced = lung_->Nodes(lung_->Amplitudes(Breath()));
   EXPECT_LT((reduced - full).norm(), 0.03 * full.norm());
+}
+
+// Two weights in one set of shapes, each with its own responses to motion and pressure.
+TEST_F(LungResponsesTest, MovesAsTheFullSolutionUnderEachWeight) {
+  const std::vector<LungWeight> weights = {{}, {{0, 0, 2}, tissue_->box().center(), 1}};
+  const LungResponses lung = *LungResponses::Make(*tissue_, neighbours_, weights);
+  for (size_t i = 0; i < weights.size(); ++i) {
+    const PressedLung full = tissue_->Under(weights[i]).SolvePressed(Breath());
+    EXPECT_LT((lung.Nodes(lung.Amplitudes(Breath(), i)) - full.followed).norm(), 0.03 * full.followed.norm()) << i;
+    const Points pressed = lung.Nodes(lung.PerPressure(i)) / LungElasticity().contact;
+    EXPECT_LT((pressed - full.pressed).norm(), 0.03 * full.pressed.norm()) << i;
+  }
+  EXPECT_GT((lung.Amplitudes(Breath(), 1) - lung.Amplitudes(Breath(), 0)).norm(),
+            0.03 * lung.Amplitudes(Breath(), 0).norm());
 }
 
 TEST_F(LungResponsesTest, RestsWhereNothingMoves) {
@@ -112,7 +126,8 @@ TEST(TissueAtPoint, HasTheStrainsOfItsGradient) {
 
 TEST_F(LungResponsesTest, StopsWithTheReason) {
   const StopCheck stop([] { return true; }, 0, "--x");
-  EXPECT_EQ(LungResponses::Make(*tissue_, neighbours_, stop).status().code(), absl::StatusCode::kCancelled);
+  EXPECT_EQ(LungResponses::Make(*tissue_, neighbours_, {LungWeight()}, stop).status().code(),
+            absl::StatusCode::kCancelled);
 }
 
 }  // namespace

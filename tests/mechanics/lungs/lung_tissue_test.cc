@@ -155,6 +155,27 @@ TEST(LungTissue, IsFreeWhereNothingTouchesIt) {
   EXPECT_NEAR(tissue.DisplacementAt(alone, tissue.box().center()).x(), 0.01, 1e-6);
 }
 
+// A ball that nothing touches, under a pressure p = E: p = 3 K e.
+TEST(LungTissue, ExpandsUniformlyUnderAPressure) {
+  const LungTissue ball =
+      Tissue(EllipsoidSurface({0, 0, 0}, Eigen::Vector3d::Constant(0.08), 32, false), {.edge = 0.02});
+  const PressedLung lung = ball.SolvePressed(Points::Constant(3, ball.points().cols(), kFree));
+  const double expected = 1 - 2 * LungElasticity().poisson;
+  for (const Eigen::Vector3d& point : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.03, 0.02, -0.04)}) {
+    const Eigen::Matrix3d strain = ball.GradientAt(lung.pressed, point);
+    EXPECT_LT(((strain + strain.transpose()) / 2 - expected * Eigen::Matrix3d::Identity()).norm(), 0.05 * expected);
+  }
+  EXPECT_LT(lung.followed.cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(LungTissue, FollowsAsWithoutAPressure) {
+  const LungTissue tissue = Tissue(LungShape(), {.edge = 0.02});
+  Points boundary = tissue.normals() * Breath(tissue).asDiagonal();
+  boundary.leftCols(20).setConstant(kFree);
+  const PressedLung lung = tissue.SolvePressed(boundary);
+  EXPECT_LT((lung.followed - tissue.SolveVectors(boundary)).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 TEST(LungTissue, KnowsWhatItContains) {
   const LungTissue tissue = Tissue(LungShape(), {.edge = 0.02});
   EXPECT_TRUE(tissue.Contains(tissue.box().center()));
