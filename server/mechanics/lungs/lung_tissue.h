@@ -32,6 +32,10 @@ struct LungElasticity {
   double tangential = 0;  // the same along the surface [1/m]; as large as `contact`: glued
 };
 
+// Checks that a surface can be a lung of bricks with this edge [m]: INVALID_ARGUMENT if it is not closed, does not face
+// outwards or has too many bricks.
+absl::Status CheckLungSurface(const Mesh& surface, double edge = LungElasticity().edge);
+
 // Immutable, thread-safe.
 class LungTissue {
  public:
