@@ -17,6 +17,7 @@ struct Part {
   v1::Organ organ = v1::ORGAN_UNSPECIFIED;
   Mask mask;                     // closed, connected, with SurfaceMargin
   std::size_t label_voxels = 0;  // before closing
+  bool filled = false;           // not in the volume: the template's (patient/template_parts.h)
 
   bool Is(v1::Structure structure) const { return anatomy.structure() == structure; }
 };

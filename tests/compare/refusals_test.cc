@@ -26,7 +26,7 @@ struct Use {
 constexpr Use kUses[] = {
     {"a material",
      "bodies { name: 'a' role: ROLE_DEFORMABLE material { density: 1000 } file { path: 'a.stl' } } "
-     "forces { gravity { bodies: 'a' } }"},
+     "forces { gravity { bodies: 'a' acceleration { z: -9.81 } } }"},
     {"contact on it",
      "bodies { name: 'a' role: ROLE_AT_REST file { path: 'a.stl' } } "
      "bodies { name: 'sheet' role: ROLE_DEFORMABLE mass: 2 "
@@ -56,13 +56,13 @@ bool Compiles(const std::string& text, const Mesh& mesh) {
   return Compile(*scene, [&mesh](const v1::Body&) -> absl::StatusOr<Mesh> { return mesh; }).ok();
 }
 
-Mesh Ball() { return EllipsoidSurface({0, 0, 0}, {0.05, 0.05, 0.05}, 5, false); }
+Mesh WholeBall() { return EllipsoidSurface({0, 0, 0}, {0.05, 0.05, 0.05}, 5, false); }
 
 Mesh Of(Points vertices, Triangles triangles) { return {std::move(vertices), std::move(triangles), {}, {}, {}}; }
 
 std::vector<std::pair<const char*, Mesh>> BrokenSurfaces() {
-  std::vector<std::pair<const char*, Mesh>> meshes = {{"whole", Ball()}};
-  const auto add = [&meshes](const char* name) -> Mesh& { return meshes.emplace_back(name, Ball()).second; };
+  std::vector<std::pair<const char*, Mesh>> meshes = {{"whole", WholeBall()}};
+  const auto add = [&meshes](const char* name) -> Mesh& { return meshes.emplace_back(name, WholeBall()).second; };
   Mesh& hole = add("with a hole");
   hole.triangles = Triangles(hole.triangles.rightCols(hole.triangles.cols() - 1));
   Mesh& inwards = add("facing inwards");
@@ -97,7 +97,7 @@ TEST(Refusals, AreThoseOfCompilation) {
   }
 }
 
-TEST(Refusals, AWholeBallIsRefusedNothing) { EXPECT_THAT(Refusals(Ball()), IsEmpty()); }
+TEST(Refusals, AWholeBallIsRefusedNothing) { EXPECT_THAT(Refusals(WholeBall()), IsEmpty()); }
 
 TEST(Refusals, RepairRemovesThem) {
   for (const auto& [name, mesh] : BrokenSurfaces()) {
@@ -117,12 +117,36 @@ TEST(Refusals, RepairRemovesThem) {
 }
 
 TEST(Refusals, ASolidIsTriedByCells) {
-  Mesh inwards = Ball();
+  Mesh inwards = WholeBall();
   inwards.triangles.row(0).swap(inwards.triangles.row(1));
   EXPECT_THAT(Refusals(inwards), testing::Contains(HasSubstr("a solid that fills it by cells of 12.5 mm")));
   const std::string solid = "bodies { name: 'a' role: ROLE_SEEN filling { cell: 0.0125 file { path: 'a.stl' } } }";
   EXPECT_FALSE(Compiles(solid, inwards));
-  EXPECT_TRUE(Compiles(solid, Ball()));
+  EXPECT_TRUE(Compiles(solid, WholeBall()));
+}
+
+// A dome of muscle from its rim to a tendon, and crumbs beside it.
+TEST(Refusals, AMuscleOfWhichNothingHoldsAPartIsRefusedUntilItIsRepaired) {
+  const std::string scene =
+      "bodies { name: 'a' role: ROLE_DEFORMABLE mass: 1 fixed_regions: 'rim' file { path: 'a.stl' } } "
+      "forces { muscle { body: 'a' from_region: 'rim' tendon_region: 'tendon' } }";
+  Mesh dome = EllipsoidSurface({0, 0, 0}, {0.1, 0.1, 0.08}, 8, true);
+  for (int i = 0; i < static_cast<int>(dome.vertices.cols()); ++i) {
+    if (dome.vertices(2, i) > 0.07) dome.regions["tendon"].push_back(i);
+  }
+  EXPECT_TRUE(Compiles(scene, dome));
+  const auto first = static_cast<int>(dome.vertices.cols());
+  Mesh crumbs = dome;
+  crumbs.vertices.conservativeResize(3, first + 3);
+  crumbs.vertices.rightCols(3) = 0.001 * Points::Identity(3, 3);
+  crumbs.triangles.conservativeResize(3, crumbs.triangles.cols() + 1);
+  crumbs.triangles.rightCols(1) << first, first + 1, first + 2;
+  EXPECT_FALSE(Compiles(scene, crumbs));
+  RepairOptions options;
+  options.repairs = {"all"};
+  RepairAll(options, crumbs);
+  EXPECT_TRUE(Compiles(scene, crumbs));
+  EXPECT_EQ(crumbs.vertices, dome.vertices);
 }
 
 }  // namespace

@@ -208,8 +208,10 @@ TEST(RepairAll, AMissingTriangleComesBack) {
 Mesh Touching(int shared) {
   Mesh turned = Tetrahedron();
   turned.vertices.bottomRows(2) *= -1;  // a half turn about the edge
-  if (shared == 1)
-    turned.vertices = Eigen::AngleAxisd(2, Eigen::Vector3d(1, 2, 3).normalized()) * Tetrahedron().vertices;
+  if (shared == 1) {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(2, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+    turned.vertices = Points(turn * turned.vertices);
+  }
   Mesh mesh = Together(Tetrahedron(), turned);
   for (int& corner : mesh.triangles.reshaped()) corner = corner >= 4 && corner < 4 + shared ? corner - 4 : corner;
   DropSlivers(0, mesh);
