@@ -54,7 +54,9 @@ absl::Status AddSurfaces(const LabelVolume& volume, const std::vector<Part>& par
     const double done = (1 - kDiaphragmsShare) * static_cast<double>(p) / static_cast<double>(parts.size());
     if (!progress(done, part.name)) return absl::CancelledError("making the patient was cancelled");
     const double edges = part.Is(v1::STRUCTURE_LUNG) ? kLungEdges : 1;
-    absl::StatusOr<Mesh> mesh = SurfaceOf(volume, part.mask, edges * options.edge_length);
+    absl::StatusOr<Mesh> mesh = part.surface.triangles.cols() > 0
+                                    ? absl::StatusOr<Mesh>(part.surface)
+                                    : SurfaceOf(volume, part.mask, edges * options.edge_length);
     if (!mesh.ok()) {
       patient.report.add_fallbacks(absl::StrCat(part.name, ": left out, ", std::string(mesh.status().message())));
       continue;

@@ -122,7 +122,12 @@ std::optional<Part> PartFrom(const Missing& missing, const TemplateFit& fit, con
   if (part.organ == v1::ORGAN_UNSPECIFIED) part.anatomy = missing.anatomy;
   part.filled = true;
   part.mask = VoxeliseMask(*mesh, volume, SurfaceMargin(volume));
-  if (missing.soft()) TakeAway(seen, part.mask);
+  if (missing.soft()) {
+    TakeAway(seen, part.mask);
+  } else {
+    Close(part.mask, 1);  // a bone may be thinner than a voxel
+    part.surface = *std::move(mesh);
+  }
   std::vector<Mask> pieces = ConnectedComponents(part.mask, SurfaceMargin(volume));
   if (pieces.empty()) return std::nullopt;
   part.mask = std::move(pieces.front());
