@@ -71,7 +71,7 @@ constexpr KindRow kKindRows[] = {
     {"--vary", Kind::kOther, "NAME:LOW:HIGH", ""},
     {"watch --measure", Kind::kOther, "NAME", ""},
     {"--measure", Kind::kOther, "MEASURE[:STATISTIC]", ""},
-    {"--repair", Kind::kChoice, "REPAIR,...", "weld slivers fins orient all"},
+    {"--repair", Kind::kChoice, "REPAIR,...", "weld cuts slivers fins orient pinches crumbs holes all"},
     {"--labels", Kind::kFile, "NAME or FILE", ""},
     {"phantom --out", Kind::kFile, "FILE or DIR", ""},
     {"patient --out", Kind::kFolder, "DIR", ""},

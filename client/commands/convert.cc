@@ -1,6 +1,7 @@
 // `phrenic convert`: writes a surface file in another format, reads it back and reports what was lost.
 #include <algorithm>
 #include <iostream>
+#include <iterator>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -11,17 +12,32 @@
 #include "client/files/whole_file.h"
 #include "client/print/output.h"
 #include "server/compare/inspection.h"
-#include "server/mesh/repair.h"
+#include "server/mesh/repair_all.h"
 #include "server/mesh/units.h"
 #include "server/meshio/meshio.h"
 
 namespace phrenic::client {
 namespace {
 
+constexpr int kMostHoles = 20;  // that are named
+
+// What a count of each of kRepairs counts.
+constexpr const char* kChanged[] = {"duplicate or unused vertices removed",
+                                    "vertices of cuts merged",
+                                    "slivers and doubled triangles removed",
+                                    "triangles of fins removed",
+                                    "triangles reoriented",
+                                    "vertices added where surfaces touched",
+                                    "crumbs removed",
+                                    "holes closed"};
+static_assert(std::size(kChanged) == std::size(kRepairs));
+
 struct ConvertOptions {
   std::string in, out;
-  std::vector<std::string> repairs;     // of "weld", "slivers", "fins", "orient" and "all"
+  std::vector<std::string> repairs;     // of kRepairs and "all"
   double within_mm = 1e-3;              // points closer than this coincide
+  double gap_mm = 0.5;                  // across a cut that is joined
+  double crumb_mm = 5, hole_mm = 10;    // extent of parts that are dropped, and of holes that are closed
   std::vector<double> offset_mm;        // shift of the surface, x y z [mm]; empty: none
   double unit_mm = 1, out_unit_mm = 1;  // length of the units of IN and OUT [mm]
 };
@@ -38,19 +54,22 @@ void ReportLosses(const meshio::Surface& in, const Mesh& out) {
   if (in.frame == meshio::Frame::kRas) std::cerr << "phrenic: converted from RAS to LPS\n";
 }
 
-// Applies the chosen repairs, in an order in which each helps the next.
+// Applies the chosen repairs, and prints what each changed and what is left.
 void Repair(const ConvertOptions& options, Mesh& mesh) {
-  const auto wanted = [&options](const char* repair) {
-    const auto& repairs = options.repairs;
-    return std::any_of(repairs.begin(), repairs.end(),
-                       [&](const auto& name) { return name == repair || name == "all"; });
-  };
-  const double within = options.within_mm / options.out_unit_mm;
-  const auto report = [](int count, const char* what) { std::cerr << "phrenic: " << count << what; };
-  if (wanted("weld")) report(Weld(within, mesh), " duplicate or unused vertices removed\n");
-  if (wanted("slivers")) report(DropSlivers(within, mesh), " slivers and doubled triangles removed\n");
-  if (wanted("fins")) report(DropFins(mesh), " triangles of fins removed\n");
-  if (wanted("orient")) report(Orient(mesh), " triangles reoriented\n");
+  if (options.repairs.empty()) return;
+  const auto in_units = [&options](double mm) { return mm / options.out_unit_mm; };
+  const RepairOptions repair = {options.repairs, in_units(options.within_mm), in_units(options.gap_mm),
+                                in_units(options.crumb_mm), in_units(options.hole_mm)};
+  const RepairReport report = RepairAll(repair, mesh);
+  for (size_t r = 0; r < std::size(kRepairs); ++r) {
+    if (report.changes[r] > 0) std::cerr << "phrenic: " << report.changes[r] << " " << kChanged[r] << "\n";
+  }
+  if (report.parts > 1) std::cerr << "phrenic: " << report.parts << " parts are left, which nothing joins\n";
+  const int shown = std::min(kMostHoles, static_cast<int>(report.open.size()));
+  for (int h = 0; h < shown; ++h) {
+    std::cerr << "phrenic: " << Describe(report.open[h], options.out_unit_mm) << " is left open\n";
+  }
+  if (const auto more = report.open.size() - shown; more > 0) std::cerr << "phrenic: so are " << more << " others\n";
 }
 
 void Shift(const ConvertOptions& options, Mesh& mesh) {
@@ -98,13 +117,30 @@ CommandFunction SetUpConvert(CLI::App& command) {
       ->expected(3)
       ->allow_extra_args(false);
   command
-      .add_option("--repair", options->repairs,
-                  "weld (merge coincident vertices), slivers (remove thin and doubled triangles), fins (remove pieces "
-                  "attached by one edge), orient (make neighbours agree and closed parts face outwards), or all (none)")
+      .add_option(
+          "--repair", options->repairs,
+          "weld (merge coincident vertices), cuts (join the sides of cuts), slivers (remove thin and doubled "
+          "triangles), fins (remove pieces attached by one edge), orient (make neighbours agree and closed "
+          "parts face outwards), pinches (part surfaces that touch in a point or an edge), crumbs (remove small "
+          "parts), holes (close small ones), or all (none)")
       ->delimiter(',')
       ->allow_extra_args(false);
   command.add_option("--within-mm", options->within_mm, "distance below which points coincide for --repair [mm]")
       ->check(NumberIn(0.0, 10.0))
+      ->capture_default_str();
+  command.add_option("--gap-mm", options->gap_mm, "width of cuts that --repair cuts joins [mm]")
+      ->check(NumberIn(0.0, 10.0))
+      ->capture_default_str();
+  command
+      .add_option("--crumb-mm", options->crumb_mm,
+                  "extent of parts that --repair crumbs removes, if it is also under a twentieth of the largest part's "
+                  "[mm]")
+      ->check(NumberIn(0.0, 1000.0))
+      ->capture_default_str();
+  command
+      .add_option("--hole-mm", options->hole_mm,
+                  "extent of holes that --repair holes closes, unless they are the rim of a sheet [mm]")
+      ->check(NumberIn(0.0, 1000.0))
       ->capture_default_str();
   return Bind(&Convert, options);
 }

@@ -35,7 +35,8 @@ struct PatientOptions {
   double edge_length = 4;  // [mm]
   int vertices = 20000;
   double tendon_share = 0.17;
-  bool anyway = false;  // also if the volume is not usable
+  bool no_fill = false;  // leave out what the volume does not show
+  bool anyway = false;   // also if the volume is not usable
   bool serve = false;
   std::string web = "127.0.0.1:8080";
 };
@@ -58,7 +59,8 @@ absl::StatusOr<imaging::Patient> ReadAndMakePatient(const PatientOptions& option
   progress.Update(0);
   const absl::StatusOr<imaging::LabelVolume> volume = imaging::ReadLabels(options.volume);
   if (!volume.ok()) return volume.status();
-  const imaging::PatientOptions patient = {options.name, options.edge_length, {options.vertices, options.tendon_share}};
+  const imaging::PatientOptions patient = {
+      options.name, options.edge_length, {options.vertices, options.tendon_share}, !options.no_fill};
   return imaging::MakePatient(*volume, *map, *scene_template, patient, [&](double done, std::string_view stage) {
     progress.SetDetail(std::string(stage));
     progress.Update(done);
@@ -90,10 +92,10 @@ void PrintReadiness(const v1::Readiness& readiness) {
 }
 
 void PrintPatient(const v1::PatientReport& report) {
-  Table surfaces({"surface", "vertices", "ml", "label ml"});
+  Table surfaces({"surface", "vertices", "ml", "label ml", "from"});
   for (const v1::PatientSurface& surface : report.surfaces()) {
     surfaces.Add({surface.body(), absl::StrCat(surface.vertices()), absl::StrFormat("%.1f", surface.volume_ml()),
-                  absl::StrFormat("%.1f", surface.label_volume_ml())});
+                  absl::StrFormat("%.1f", surface.label_volume_ml()), surface.from_template() ? "template" : "volume"});
   }
   surfaces.Print(std::cout);
   Table ribs({"rib", "neck mm", "axis to midplane deg", "drop deg"});
@@ -173,9 +175,10 @@ int MakePatient(const Context& context, const PatientOptions& options) {
 CommandFunction SetUpPatient(CLI::App& command) {
   const auto options = std::make_shared<PatientOptions>();
   command
-      .add_option("VOLUME", options->volume,
-                  "labels as NIfTI (.nii, .nii.gz) or DICOM Segmentation, or a scene (.textproto) whose bodies are "
-                  "surface files")
+      .add_option(
+          "VOLUME", options->volume,
+          "labels as NIfTI (.nii, .nii.gz), DICOM Segmentation or RT Structure Set, or a scene (.textproto) whose "
+          "bodies are surface files")
       ->required();
   AddLabels(command, options->labels);
   command.add_option("--data", options->data, "folder of the scene's surface files; without it, that of --out");
@@ -192,6 +195,8 @@ CommandFunction SetUpPatient(CLI::App& command) {
   command.add_option("--tendon-share", options->tendon_share, "fraction of the diaphragm's area that is tendon")
       ->check(NumberIn(0.05, 0.5))
       ->capture_default_str();
+  command.add_flag("--no-fill", options->no_fill,
+                   "leave out what the volume does not show, instead of filling it from the generated thorax");
   command.add_flag("--anyway", options->anyway, "write the patient also if the volume is not usable");
   CLI::Option* serve = command.add_flag("--serve", options->serve, "then start phrenicd with the viewer");
   command.add_option("--web", options->web, "address of the viewer")->needs(serve)->capture_default_str();

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/compare/refusals.h"
 #include "server/mesh/normals.h"
 #include "server/mesh/topology.h"
 #include "server/mesh/units.h"
@@ -136,29 +137,17 @@ void JudgeRepairs(v1::SurfaceReport& report) {
   AddIf(report.misoriented_edges(), repairs,
         "%d edges join triangles of opposite orientation: volumes and normals are wrong there (--repair orient)");
   AddIf(report.pinched_vertices(), repairs,
-        "%d vertices join surfaces that touch in a point, where genus and normals are wrong: duplicate these vertices");
-  AddIf(report.boundary_edges(), repairs, "%d edges are open: close the surface if it is an organ, not a sheet");
+        "%d vertices join surfaces that touch in a point, where genus and normals are wrong: part them (--repair "
+        "pinches)");
+  AddIf(report.boundary_edges(), repairs,
+        "%d edges are open: close the surface if it is an organ, not a sheet (--repair cuts,holes; those larger than "
+        "--hole-mm stay)");
   AddIf(inwards, repairs,
         "%d closed components face inwards: flip them unless they are cavities of other components (--repair orient)");
   if (report.unit_mm() == 1 && (report.likely_unit() == "cm" || report.likely_unit() == "m")) {
     repairs->Add(absl::StrCat("the size fits a body part in ", report.likely_unit(),
                               ", but mm are assumed: set --unit-mm here, or unit in a scene"));
   }
-}
-
-void JudgeRefusals(v1::SurfaceReport& report) {
-  auto* refusals = report.mutable_refusals();
-  if (report.triangles() == 0) {
-    refusals->Add(
-        "no triangles: no contact, no attachment or skinning of other bodies, and no material (density) in place of a "
-        "mass");
-  } else if (report.area_mm2() <= 0) {
-    refusals->Add("no area: no material (density) in place of a mass");
-  }
-  if (report.has_volume_ml() && report.volume_ml() < 0) {
-    refusals->Add("faces inwards: filling it by a solid finds no cell inside");
-  }
-  if (report.duplicate_vertices() > 0) refusals->Add("coincident vertices: no rigid links between them");
 }
 
 }  // namespace
@@ -180,7 +169,7 @@ v1::SurfaceReport Inspect(const std::string& name, const meshio::Surface& surfac
   Measure(surface.mesh, unit_mm, report);
   for (const auto& [region, vertices] : surface.mesh.regions) report.add_regions(region);
   JudgeRepairs(report);
-  JudgeRefusals(report);
+  for (std::string& refusal : Refusals(surface.mesh)) report.add_refusals(std::move(refusal));
   return report;
 }
 

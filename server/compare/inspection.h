@@ -11,8 +11,8 @@ namespace phrenic::compare {
 
 // Inspects `surface` [m], which was read from the file `name` with the unit `unit_mm` [mm]. The report has counts of
 // vertices, triangles and defects, the Euler characteristic and genus of each component (largest first), bounds [mm],
-// area [mm^2], volume [ml] if every component is closed and consistently oriented, suggested repairs, and uses for
-// which the surface is refused.
+// area [mm^2], volume [ml] if every component is closed and consistently oriented, suggested repairs, and what a
+// scene would refuse (refusals.h).
 v1::SurfaceReport Inspect(const std::string& name, const meshio::Surface& surface, double unit_mm);
 
 // Returns the unit "mm", "cm" or "m" in which an object of this largest extent [file units] has the size of a body part

@@ -72,7 +72,7 @@ absl::StatusOr<Fields> Recognise(std::string_view name, std::string_view bytes) 
   return absl::InvalidArgumentError(
       absl::StrCat(std::string(name),
                    ": not a NIfTI-1 or NIfTI-2 file, nor a DICOM file: its first bytes are not such a header; save the "
-                   "segmentation as .nii, .nii.gz or DICOM Segmentation"));
+                   "segmentation as .nii, .nii.gz, DICOM Segmentation or RT Structure Set"));
 }
 
 absl::Status ReadSize(const Fields& fields, NiftiHeader& header) {

@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "phrenic/v1/patient.pb.h"
 #include "server/imaging/mask.h"
+#include "server/mesh/mesh.h"
 
 namespace phrenic::imaging {
 
@@ -17,6 +18,8 @@ struct Part {
   v1::Organ organ = v1::ORGAN_UNSPECIFIED;
   Mask mask;                     // closed, connected, with SurfaceMargin
   std::size_t label_voxels = 0;  // before closing
+  bool filled = false;           // not in the volume: the template's (patient/template_parts.h)
+  Mesh surface = {};             // of a filled bone [m]; else it is made from the mask
 
   bool Is(v1::Structure structure) const { return anatomy.structure() == structure; }
 };

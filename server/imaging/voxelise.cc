@@ -24,4 +24,19 @@ void Voxelise(const Mesh& mesh, Label number, LabelVolume& volume) {
   }
 }
 
+Mask VoxeliseMask(const Mesh& mesh, const LabelVolume& volume, int margin) {
+  const Points voxels = volume.to_patient.inverse() * (mesh.vertices / kMillimetre);
+  const Eigen::Vector3d low = voxels.rowwise().minCoeff(), high = voxels.rowwise().maxCoeff();
+  LabelVolume around;
+  Mask mask;
+  mask.low = low.array().floor().cast<int>() - margin;
+  mask.size = high.array().ceil().cast<int>() + 1 + margin - mask.low.array();
+  around.size = mask.size;
+  around.to_patient = volume.to_patient * Eigen::Translation3d(mask.low.cast<double>());
+  around.labels.assign(static_cast<std::size_t>(mask.size.x()) * mask.size.y() * mask.size.z(), 0);
+  Voxelise(mesh, 1, around);
+  mask.inside.assign(around.labels.begin(), around.labels.end());
+  return mask;
+}
+
 }  // namespace phrenic::imaging

@@ -21,6 +21,9 @@ void KeepTriangles(const std::vector<bool>& keep, Mesh& mesh) {
 }
 
 void RenumberVertices(const std::vector<int>& number, Mesh& mesh) {
+  int same = 0;
+  while (same < static_cast<int>(number.size()) && number[same] == same) ++same;
+  if (same == static_cast<int>(number.size())) return;
   Renumber(number, mesh.triangles);
   Renumber(number, mesh.tetrahedra);
   Renumber(number, mesh.edges);
@@ -42,6 +45,7 @@ void DropUnusedVertices(Mesh& mesh) {
     number[i] = static_cast<int>(kept.size());
     kept.push_back(i);
   }
+  if (kept.size() == used.size()) return;
   for (auto& [region, vertices] : mesh.regions) std::erase_if(vertices, [&](int vertex) { return !used[vertex]; });
   mesh.vertices = Points(mesh.vertices(Eigen::all, kept));
   RenumberVertices(number, mesh);

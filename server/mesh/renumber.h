@@ -12,7 +12,7 @@ namespace phrenic {
 void KeepTriangles(const std::vector<bool>& keep, Mesh& mesh);
 
 // Replaces vertex index i by number[i] in triangles, tetrahedra, edges and regions; regions end up sorted, each index
-// once. mesh.vertices is unchanged.
+// once, unless every number[i] is i. mesh.vertices is unchanged.
 void RenumberVertices(const std::vector<int>& number, Mesh& mesh);
 
 // Removes vertices that no triangle, tetrahedron or edge uses, also from regions, and renumbers the others.

@@ -1,5 +1,6 @@
 #include "server/mesh/repair.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <numeric>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "server/mesh/half_edges.h"
 #include "server/mesh/nearest.h"
 #include "server/mesh/renumber.h"
+#include "server/mesh/topology.h"
 
 namespace phrenic {
 namespace {
@@ -25,6 +27,17 @@ std::vector<int> Pieces(const std::vector<HalfEdge>& half_edges, size_t triangle
   });
   for (int t = 0; t < static_cast<int>(triangles); ++t) parent[t] = root(t);
   return parent;
+}
+
+constexpr double kCrumbShare = 0.05;  // most of the largest component's extent that a crumb has
+
+// Returns the diagonal of the bounding box of these triangles [m].
+double ExtentOf(const Mesh& mesh, const std::vector<int>& triangles) {
+  Eigen::AlignedBox3d box;
+  for (const int t : triangles) {
+    for (const int vertex : mesh.triangles.col(t)) box.extend(Eigen::Vector3d(mesh.vertices.col(vertex)));
+  }
+  return box.diagonal().norm();
 }
 
 }  // namespace
@@ -59,6 +72,25 @@ int DropFins(Mesh& mesh) {
   });
   for (size_t t = 0; t < count; ++t) keep[t] = !(open[piece[t]] && attached[piece[t]]);
   const int dropped = static_cast<int>(std::count(keep.begin(), keep.end(), false));
+  if (dropped == 0) return 0;
+  KeepTriangles(keep, mesh);
+  DropUnusedVertices(mesh);
+  return dropped;
+}
+
+int DropCrumbs(double extent, Mesh& mesh) {
+  const std::vector<std::vector<int>> components = Components(mesh);
+  std::vector<double> extents;
+  extents.reserve(components.size());
+  for (const std::vector<int>& component : components) extents.push_back(ExtentOf(mesh, component));
+  const double largest = extents.empty() ? 0 : *std::max_element(extents.begin(), extents.end());
+  std::vector<bool> keep(static_cast<size_t>(mesh.triangles.cols()), true);
+  int dropped = 0;
+  for (size_t c = 0; c < components.size(); ++c) {
+    if (extents[c] >= std::min(extent, kCrumbShare * largest)) continue;
+    for (const int t : components[c]) keep[t] = false;
+    ++dropped;
+  }
   if (dropped == 0) return 0;
   KeepTriangles(keep, mesh);
   DropUnusedVertices(mesh);

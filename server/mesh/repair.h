@@ -23,6 +23,21 @@ int DropSlivers(double height, Mesh& mesh);
 // boundary edge. Returns the number of triangles removed.
 int DropFins(Mesh& mesh);
 
+// Joins cuts: merges the ends of boundary edges that lie opposite each other, each end within `gap` [m] of its
+// counterpart and within a quarter of both edges' lengths. Ends that an edge joins already stay apart. Returns the
+// number of vertices merged into others.
+int JoinCuts(double gap, Mesh& mesh);
+
+// Gives each fan of triangles at a pinched vertex, and each of several bodies that touch along an edge of four
+// triangles, a vertex of its own. The largest fan keeps its place; the others move by `apart` [m], or a multiple of it,
+// towards their middle, so that no two vertices coincide. Surfaces that meet in three sheets stay. Returns the number
+// of vertices added. Does nothing to a mesh with tetrahedra or edges of its own.
+int SplitPinches(double apart, Mesh& mesh);
+
+// Removes crumbs: components whose bounding box has a diagonal under `extent` [m] and under a twentieth of that of the
+// largest component. Returns the number of components removed.
+int DropCrumbs(double extent, Mesh& mesh);
+
 // Makes the winding consistent: neighbours agree across manifold edges, and closed components face outwards (positive
 // signed volume). An open or non-orientable component keeps the winding of its majority. A closed component inside the
 // bounding box of another closed one may be a cavity; it keeps the winding of its majority. Returns the number of

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/mesh/fans.h"
 #include "server/mesh/half_edges.h"
 
 namespace phrenic {
@@ -105,29 +106,7 @@ std::vector<int> BoundaryVertices(const Triangles& triangles) {
 }
 
 std::vector<int> PinchedVertices(const Triangles& triangles) {
-  // Corner 3 t + k is the k-th corner of triangle t. Corners at the same vertex are united across each edge there; each
-  // remaining set is a fan.
-  struct Corners {
-    int low, high, at_low, at_high;  // the half-edge's vertices, and its triangle's corners at them
-  };
-  std::vector<Corners> half_edges;
-  std::vector<int> parent(static_cast<size_t>(triangles.size()));
-  std::iota(parent.begin(), parent.end(), 0);
-  for (int t = 0; t < static_cast<int>(triangles.cols()); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const int next = (k + 1) % 3, a = triangles(k, t), b = triangles(next, t);
-      const int at_a = 3 * t + k, at_b = 3 * t + next;
-      half_edges.push_back(a < b ? Corners{a, b, at_a, at_b} : Corners{b, a, at_b, at_a});
-    }
-  }
-  const auto edge = [](const Corners& corners) { return std::pair(corners.low, corners.high); };
-  std::sort(half_edges.begin(), half_edges.end(),
-            [&](const Corners& a, const Corners& b) { return edge(a) < edge(b); });
-  for (size_t i = 1; i < half_edges.size(); ++i) {
-    if (edge(half_edges[i - 1]) != edge(half_edges[i])) continue;
-    parent[Root(parent, half_edges[i].at_low)] = Root(parent, half_edges[i - 1].at_low);
-    parent[Root(parent, half_edges[i].at_high)] = Root(parent, half_edges[i - 1].at_high);
-  }
+  const std::vector<int> parent = CornerFans(triangles, false);
   std::vector<int> fans(triangles.size() > 0 ? static_cast<size_t>(triangles.maxCoeff()) + 1 : 0, 0);
   for (int corner = 0; corner < static_cast<int>(parent.size()); ++corner) {
     if (parent[corner] == corner) ++fans[triangles(corner % 3, corner / 3)];

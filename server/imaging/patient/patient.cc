@@ -4,13 +4,16 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <numeric>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "server/imaging/label_map.h"
 #include "server/imaging/label_surface.h"
 #include "server/imaging/patient/patient_scene.h"
 #include "server/imaging/patient/readiness.h"
+#include "server/imaging/patient/template_parts.h"
 #include "server/imaging/rib_axis.h"
 #include "server/mesh/topology.h"
 #include "server/mesh/units.h"
@@ -23,13 +26,23 @@ constexpr double kLungEdges = 1.5;        // edge length of lungs, relative to b
 
 bool HasSurface(const Part& part) { return part.organ == v1::ORGAN_UNSPECIFIED && !part.Is(v1::STRUCTURE_DIAPHRAGM); }
 
-absl::Status CheckParts(const std::vector<Part>& parts) {
+absl::Status CheckParts(const FilledParts& filled) {
+  const std::vector<Part>& parts = filled.parts;
   const auto has = [&parts](v1::Structure structure) {
     return std::any_of(parts.begin(), parts.end(), [&](const Part& part) { return part.Is(structure); });
   };
   if (has(v1::STRUCTURE_LUNG) && has(v1::STRUCTURE_RIB) && has(v1::STRUCTURE_VERTEBRA)) return absl::OkStatus();
-  return absl::FailedPreconditionError(
-      "by this label map the volume has no lungs, no ribs or no vertebrae, so it cannot be made into a thorax");
+  const std::string& why = filled.report.not_filled();
+  return absl::FailedPreconditionError(absl::StrCat(
+      "by this label map the volume has no lungs, no ribs or no vertebrae, so it cannot be made into a thorax",
+      why.empty() ? "" : ", and they cannot be filled: ", why));
+}
+
+// Marks every vertex of a mesh as the template's.
+void MarkAll(Mesh& mesh) {
+  std::vector<int>& all = mesh.regions[kFromTemplate];
+  all.resize(static_cast<std::size_t>(mesh.vertices.cols()));
+  std::iota(all.begin(), all.end(), 0);
 }
 
 absl::Status AddSurfaces(const LabelVolume& volume, const std::vector<Part>& parts, const PatientOptions& options,
@@ -41,7 +54,9 @@ absl::Status AddSurfaces(const LabelVolume& volume, const std::vector<Part>& par
     const double done = (1 - kDiaphragmsShare) * static_cast<double>(p) / static_cast<double>(parts.size());
     if (!progress(done, part.name)) return absl::CancelledError("making the patient was cancelled");
     const double edges = part.Is(v1::STRUCTURE_LUNG) ? kLungEdges : 1;
-    absl::StatusOr<Mesh> mesh = SurfaceOf(volume, part.mask, edges * options.edge_length);
+    absl::StatusOr<Mesh> mesh = part.surface.triangles.cols() > 0
+                                    ? absl::StatusOr<Mesh>(part.surface)
+                                    : SurfaceOf(volume, part.mask, edges * options.edge_length);
     if (!mesh.ok()) {
       patient.report.add_fallbacks(absl::StrCat(part.name, ": left out, ", std::string(mesh.status().message())));
       continue;
@@ -52,9 +67,26 @@ absl::Status AddSurfaces(const LabelVolume& volume, const std::vector<Part>& par
     surface.set_triangles(static_cast<int>(mesh->triangles.cols()));
     surface.set_volume_ml(1e6 * SignedVolume(mesh->vertices, mesh->triangles));
     surface.set_label_volume_ml(voxel_ml * static_cast<double>(part.label_voxels));
+    surface.set_from_template(part.filled);
+    if (part.filled) MarkAll(*mesh);
     patient.bodies.push_back({part.name, part.anatomy, *std::move(mesh)});
   }
   return absl::OkStatus();
+}
+
+// Returns the parts of the volume, and those filled from the template if that is wanted and the volume lacks some.
+FilledParts Fill(const LabelVolume& volume, const std::vector<Part>& seen, bool wanted, Messages& fallbacks) {
+  if (!wanted) return {volume, seen, {}};
+  FilledParts filled = FillFromTemplate(volume, seen);
+  const v1::TemplateFill& report = filled.report;
+  if (!report.not_filled().empty()) {
+    fallbacks.push_back(absl::StrCat("nothing was filled from the template: ", report.not_filled()));
+  }
+  if (report.parts().empty()) return filled;
+  fallbacks.push_back(absl::StrFormat(
+      "from the generated thorax, scaled by %.2f, %.2f and %.2f along x, y and z, %.1f mm from what is seen: %s",
+      report.scale(0), report.scale(1), report.scale(2), report.residual_mm(), absl::StrJoin(report.parts(), ", ")));
+  return filled;
 }
 
 // Adds the diaphragm, what is simulated of it, and the wall, before the others.
@@ -93,24 +125,29 @@ absl::StatusOr<Patient> MakePatient(const LabelVolume& volume, const v1::LabelMa
   Patient patient;
   patient.report.set_name(options.name);
   Messages fallbacks = volume.remarks;
-  const absl::StatusOr<std::vector<Part>> parts = FindParts(volume, Resolve(map, volume, fallbacks), fallbacks);
-  if (!parts.ok()) return parts.status();
-  if (absl::Status status = CheckParts(*parts); !status.ok()) return status;
-  const absl::StatusOr<CageFrame> frame = FindCageFrame(volume, *parts, fallbacks);
+  const absl::StatusOr<std::vector<Part>> seen = FindParts(volume, Resolve(map, volume, fallbacks), fallbacks);
+  if (!seen.ok()) return seen.status();
+  const FilledParts filled = Fill(volume, *seen, options.fill, fallbacks);
+  *patient.report.mutable_fill() = filled.report;
+  const std::vector<Part>& parts = filled.parts;
+  if (absl::Status status = CheckParts(filled); !status.ok()) return status;
+  const absl::StatusOr<CageFrame> frame = FindCageFrame(filled.volume, parts, fallbacks);
   if (!frame.ok()) return frame.status();
-  absl::Status status = AddSurfaces(volume, *parts, options, progress, patient);
+  absl::Status status = AddSurfaces(filled.volume, parts, options, progress, patient);
   if (!status.ok()) return status;
   if (!progress(1 - kDiaphragmsShare, "diaphragm")) return absl::CancelledError("making the patient was cancelled");
-  const FittedCage cage(volume, *parts, *frame, fallbacks);
+  const FittedCage cage(filled.volume, parts, *frame, fallbacks);
   absl::StatusOr<DerivedDiaphragm> diaphragm =
-      DeriveDiaphragm(volume, *parts, *frame, cage, options.diaphragm, fallbacks);
+      DeriveDiaphragm(filled.volume, parts, *frame, cage, options.diaphragm, fallbacks);
   if (!diaphragm.ok()) return diaphragm.status();
   *patient.report.mutable_diaphragm() = diaphragm->report;
+  MarkFilled(filled, diaphragm->mesh);
+  patient.report.mutable_fill()->set_diaphragm_share(MarkFilled(filled, diaphragm->middle));
   AddDerived(*std::move(diaphragm), cage, patient);
   patient.report.set_moved_left_mm(-frame->centre.x());
   for (PatientBody& body : patient.bodies) body.mesh.vertices.row(0).array() -= kMillimetre * frame->centre.x();
   ReportRibs(*frame, patient);
-  *patient.report.mutable_readiness() = JudgeReadiness(volume, *parts, patient.bodies, patient.report);
+  *patient.report.mutable_readiness() = JudgeReadiness(volume, *seen, patient.bodies, patient.report);
   patient.scene = PatientScene(pattern, patient.bodies, *frame, options.name);
   for (std::string& message : fallbacks) patient.report.add_fallbacks(std::move(message));
   return patient;

@@ -19,6 +19,7 @@ struct PatientOptions {
   std::string name = "patient";  // of the scene, and of the folder of its surfaces
   double edge_length = 4;        // of bones [mm]; lungs get half as much again
   DiaphragmOptions diaphragm;
+  bool fill = true;  // what the volume does not show, from the template (template_parts.h)
 };
 
 struct Patient {
@@ -32,8 +33,8 @@ using PatientProgress = absl::FunctionRef<bool(double done, std::string_view doi
 
 // `pattern` is the scene that supplies forces, breath and presets, scaled to the patient's width: the installed scene
 // "thorax". All parts are shifted along x by one distance (in the report) so that the midsagittal plane is x = 0, as
-// scenes require. FAILED_PRECONDITION if the volume has no lungs, ribs or vertebrae; CANCELLED if `progress` returns
-// false.
+// scenes require. Vertices that are the template's are the region "from-template" of their body. FAILED_PRECONDITION if
+// the volume has no lungs, ribs or vertebrae and they could not be filled; CANCELLED if `progress` returns false.
 absl::StatusOr<Patient> MakePatient(const LabelVolume& volume, const v1::LabelMap& map, const v1::Scene& pattern,
                                     const PatientOptions& options, PatientProgress progress);
 

@@ -50,7 +50,23 @@ void FindCutRibs(const LabelVolume& volume, const std::vector<Part>& parts, Find
       findings);
 }
 
-void FindMissingRibs(const std::vector<Part>& parts, Findings& findings) {
+bool IsFilled(const v1::PatientReport& report, const std::string& name) {
+  const auto& parts = report.fill().parts();
+  return std::find(parts.begin(), parts.end(), name) != parts.end();
+}
+
+// Filled parts are the template's: care at best, whatever else is seen.
+void FindFilled(const v1::TemplateFill& fill, Findings& findings) {
+  constexpr double kMostOff = 15;  // residual of the template's registration [mm]
+  if (fill.parts().empty()) return;
+  Add(fill.residual_mm() > kMostOff,
+      absl::StrFormat("not seen, but filled from the generated thorax, which fits what is seen to %.1f mm: %s; their "
+                      "shape is not the person's, and %.0f %% of the diaphragm rests on them",
+                      fill.residual_mm(), absl::StrJoin(fill.parts(), ", "), 100 * fill.diaphragm_share()),
+      findings);
+}
+
+void FindMissingRibs(const std::vector<Part>& parts, const v1::PatientReport& report, Findings& findings) {
   constexpr int kLast = 10;  // ribs 11 and 12 float
   constexpr std::size_t kMost = 7;
   std::vector<std::string> missing;
@@ -59,7 +75,9 @@ void FindMissingRibs(const std::vector<Part>& parts, Findings& findings) {
       const bool there = std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
         return part.Is(v1::STRUCTURE_RIB) && part.anatomy.side() == side && part.anatomy.number() == number;
       });
-      if (!there) missing.push_back(absl::StrFormat("%d %s", number, side == v1::SIDE_RIGHT ? "right" : "left"));
+      const char* word = side == v1::SIDE_RIGHT ? "right" : "left";
+      if (there || IsFilled(report, absl::StrFormat("rib-%d-%s", number, word))) continue;
+      missing.push_back(absl::StrFormat("%d %s", number, word));
     }
   }
   if (missing.empty()) return;
@@ -154,7 +172,8 @@ v1::Readiness JudgeReadiness(const LabelVolume& volume, const std::vector<Part>&
   Findings findings;
   FindCutLungs(volume, parts, findings);
   FindCutRibs(volume, parts, findings);
-  FindMissingRibs(parts, findings);
+  FindMissingRibs(parts, report, findings);
+  FindFilled(report.fill(), findings);
   FindMissingOrgans(parts, findings);
   FindExtrapolation(report.diaphragm(), findings);
   FindOddAxes(report, findings);

@@ -15,13 +15,16 @@ namespace phrenic::imaging {
 //
 //   cut lung            a lung that the border cuts over more than 2 cm^2; not usable above 20
 //   cut ribs            ribs that the border cuts; not usable from 8
-//   missing ribs        of ribs 1 to 10 of both sides; not usable from 7
+//   missing ribs        of ribs 1 to 10 of both sides, neither seen nor filled; not usable from 7
+//   filled parts        from the template: never better than with care; not usable if it is registered to worse than
+//                       15 mm
 //   missing organs      heart, liver, or both stomach and spleen, unless the diaphragm has a label; not usable if all
 //   extrapolated sheet  more than 25 % of the sheet; not usable above 50 %
 //   axes of ribs        necks whose angle to the midsagittal plane is outside 25 to 90 degrees; not usable from a
-//   quarter tower               a sheet whose middle fifth is higher than its domes; not usable above 15 mm crossed
-//   sheet       a sheet that crosses itself at rest; not usable from 20 places area                a sheet outside of
-//   500 to 1,600 cm^2; adults have 700 to 1,300
+//                       quarter
+//   tower               a sheet whose middle fifth is higher than its domes; not usable above 15 mm
+//   crossed sheet       a sheet that crosses itself at rest; not usable from 20 places
+//   area                a sheet outside of 500 to 1,600 cm^2; adults have 700 to 1,300
 //
 // Requires: the report has ribs and diaphragm, and the bodies are moved to the midsagittal plane. Thread-safe.
 v1::Readiness JudgeReadiness(const LabelVolume& volume, const std::vector<Part>& parts,

@@ -39,22 +39,6 @@ Eigen::AlignedBox3d BoxAround(const Points& vertices) {
           Eigen::Vector3d(vertices.rowwise().maxCoeff() / kMillimetre)};
 }
 
-// Returns the voxels of the grid inside the surface [m].
-Mask MaskOf(const Mesh& mesh, const LabelVolume& volume) {
-  const Eigen::Affine3d to_voxel = volume.to_patient.inverse();
-  const Eigen::AlignedBox3d box = BoxAround(mesh.vertices);
-  LabelVolume around;
-  Mask mask;
-  mask.low = (to_voxel * box.min()).array().floor().cast<int>() - 1;
-  mask.size = (to_voxel * box.max()).array().ceil().cast<int>() + 2 - mask.low.array();
-  around.size = mask.size;
-  around.to_patient = volume.to_patient * Eigen::Translation3d(mask.low.cast<double>());
-  around.labels.assign(static_cast<std::size_t>(mask.size.x()) * mask.size.y() * mask.size.z(), 0);
-  Voxelise(mesh, 1, around);
-  mask.inside.assign(around.labels.begin(), around.labels.end());
-  return mask;
-}
-
 }  // namespace
 
 absl::StatusOr<VoxelisedParts> VoxeliseParts(const std::vector<PatientBody>& bodies, const GoOn& go_on) {
@@ -85,7 +69,7 @@ absl::StatusOr<VoxelisedParts> VoxeliseParts(const std::vector<PatientBody>& bod
     Part& part = voxelised.parts.emplace_back();
     part.name = body.name;
     part.anatomy = body.anatomy;
-    part.mask = MaskOf(body.mesh, voxelised.volume);
+    part.mask = VoxeliseMask(body.mesh, voxelised.volume, 1);
     part.label_voxels = part.mask.Count();
     if (part.label_voxels > 0) continue;
     return absl::InvalidArgumentError(absl::StrCat("body \"", body.name, "\": encloses no voxel of ", voxel,

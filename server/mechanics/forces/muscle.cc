@@ -8,6 +8,8 @@
 #include "server/mechanics/forces/packed_points.h"
 #include "server/mesh/harmonic.h"
 #include "server/mesh/normals.h"
+#include "server/mesh/topology.h"
+#include "server/mesh/units.h"
 
 namespace phrenic {
 namespace {
@@ -50,6 +52,28 @@ absl::StatusOr<MuscleRegions> FindRegions(const v1::Muscle& scene, int body, con
   }
   regions.from = *std::move(from), regions.tendon = *std::move(tendon);
   return regions;
+}
+
+// INVALID_ARGUMENT if a part of the surface has no vertex of the region that the fibres start from and none that is
+// fixed.
+absl::Status CheckHeld(const BodyModel& body, const std::vector<bool>& from, const Eigen::VectorXd& inverse_mass,
+                       const v1::Muscle& scene, const std::string& path) {
+  const Mesh& mesh = body.mesh;
+  for (const std::vector<int>& part : Components(mesh)) {
+    const bool held = std::any_of(part.begin(), part.end(), [&](int t) {
+      const auto corners = mesh.triangles.col(t);
+      return std::any_of(corners.begin(), corners.end(),
+                         [&](int v) { return from[v] || inverse_mass[body.first_vertex + v] == 0; });
+    });
+    if (held) continue;
+    const Eigen::Vector3d at = kMillimetresAMetre * mesh.vertices.col(mesh.triangles(0, part.front()));
+    return FieldError(
+        path, absl::StrFormat("nothing holds a part of %d triangles at %.0f, %.0f, %.0f mm: it has no vertex of "
+                              "the region \"%s\" and none that is fixed; join or remove it (phrenic convert "
+                              "--repair cuts,crumbs)",
+                              part.size(), at.x(), at.y(), at.z(), scene.from_region()));
+  }
+  return absl::OkStatus();
 }
 
 void SetRestingTensions(const v1::Muscle& scene, MuscleTriangle& triangle) {
@@ -117,6 +141,8 @@ absl::StatusOr<std::unique_ptr<Force>> Muscle::Make(const v1::Muscle& scene, con
   const BodyModel& body = builder.model.bodies[bodies->front()];
   const auto regions = FindRegions(scene, bodies->front(), path, builder);
   if (!regions.ok()) return regions.status();
+  const Eigen::VectorXd& inverse_mass = builder.model.inverse_mass;
+  if (absl::Status held = CheckHeld(body, regions->from, inverse_mass, scene, path); !held.ok()) return held;
   const auto height = HarmonicBetween(body.mesh, regions->from, regions->tendon);
   if (!height.ok()) return FieldError(path, std::string(height.status().message()));
   std::unique_ptr<Muscle> muscle(new Muscle(name, scene, body));

@@ -34,21 +34,6 @@ absl::Status CheckElasticity(const LungElasticity& e) {
   return absl::OkStatus();
 }
 
-absl::Status CheckSurface(const Mesh& surface, double edge) {
-  if (absl::Status status = Validate(surface); !status.ok()) return status;
-  if (surface.triangles.cols() == 0 || !AnalyseTopology(surface).watertight()) {
-    return absl::InvalidArgumentError("the surface of a lung must be closed: see phrenic inspect");
-  }
-  if (SignedVolume(surface.vertices, surface.triangles) <= 0) {
-    return absl::InvalidArgumentError("the surface of a lung must face outwards: reverse its triangles");
-  }
-  const Eigen::Vector3d size = surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff();
-  const double bricks = (size / edge).array().ceil().prod();
-  if (bricks <= LungTissue::kMostBricks) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat("a lung has up to ", LungTissue::kMostBricks, " bricks, not ", bricks,
-                                                 ": make their edge longer, or check the surface's unit"));
-}
-
 // Adds the lower triangle of a brick's stiffness.
 void AddBrick(const BrickCorners& corners, const BrickMatrix& stiffness, Entries& entries) {
   for (int i = 0; i < 24; ++i) {
@@ -81,6 +66,21 @@ std::pair<std::vector<bool>, Points> Held(const ConstPoints& displacement) {
 
 }  // namespace
 
+absl::Status CheckLungSurface(const Mesh& surface, double edge) {
+  if (absl::Status status = Validate(surface); !status.ok()) return status;
+  if (surface.triangles.cols() == 0 || !AnalyseTopology(surface).watertight()) {
+    return absl::InvalidArgumentError("the surface of a lung must be closed: see phrenic inspect");
+  }
+  if (SignedVolume(surface.vertices, surface.triangles) <= 0) {
+    return absl::InvalidArgumentError("the surface of a lung must face outwards: reverse its triangles");
+  }
+  const Eigen::Vector3d size = surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff();
+  const double bricks = (size / edge).array().ceil().prod();
+  if (bricks <= LungTissue::kMostBricks) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("a lung has up to ", LungTissue::kMostBricks, " bricks, not ", bricks,
+                                                 ": make their edge longer, or check the surface's unit"));
+}
+
 LungTissue::LungTissue(const Mesh& surface, const LungElasticity& elasticity)
     : elasticity_(elasticity), surface_(surface), grid_(surface, elasticity.edge) {
   const Eigen::Index count = surface.triangles.cols();
@@ -101,7 +101,7 @@ LungTissue::LungTissue(const Mesh& surface, const LungElasticity& elasticity)
 absl::StatusOr<LungTissue> LungTissue::Make(const Mesh& surface, const LungElasticity& elasticity,
                                             const StopCheck& stop) {
   if (absl::Status status = CheckElasticity(elasticity); !status.ok()) return status;
-  if (absl::Status status = CheckSurface(surface, elasticity.edge); !status.ok()) return status;
+  if (absl::Status status = CheckLungSurface(surface, elasticity.edge); !status.ok()) return status;
   LungTissue tissue(surface, elasticity);
   if (stop.Stopped()) return stop.status();
   std::optional<LayeredCholesky> factors = tissue.Factorise(std::vector<bool>(tissue.places_.size(), false), stop);

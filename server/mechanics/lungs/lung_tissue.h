@@ -42,6 +42,10 @@ struct PressedLung {
   Points pressed;   // by a pressure of one Young's modulus outwards on the whole surface [m]
 };
 
+// Checks that a surface can be a lung of bricks with this edge [m]: INVALID_ARGUMENT if it is not closed, does not face
+// outwards or has too many bricks.
+absl::Status CheckLungSurface(const Mesh& surface, double edge = LungElasticity().edge);
+
 // Immutable, thread-safe.
 class LungTissue {
  public:

@@ -1,0 +1,119 @@
+// Filling from the template in the surfaces of a real thorax, which the template was not made from.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+#include "server/imaging/derived_diaphragm.h"
+#include "server/imaging/patient/template_parts.h"
+#include "server/imaging/surfaces/derived_thorax.h"
+#include "server/imaging/surfaces/voxelised_parts.h"
+#include "server/mesh/triangle_tree.h"
+#include "server/meshio/meshio.h"
+#include "server/schema/schema.h"
+
+namespace phrenic::imaging {
+namespace {
+
+const std::filesystem::path kRealFolder = std::filesystem::path(PHRENIC_SHARED_DIR) / "data";
+
+// Returns the mean distance of a's vertices from b [mm].
+double MeanTo(const Mesh& a, const Mesh& b) {
+  const TriangleTree tree(b.vertices, b.triangles);
+  TriangleTree::Boxes boxes;
+  tree.Fit(b.vertices, boxes);
+  double sum = 0;
+  for (Eigen::Index i = 0; i < a.vertices.cols(); ++i) {
+    sum += 1e3 * std::sqrt(tree.Nearest(b.vertices, boxes, a.vertices.col(i), 1).squared);
+  }
+  return sum / static_cast<double>(a.vertices.cols());
+}
+
+double Assd(const Mesh& a, const Mesh& b) { return (MeanTo(a, b) + MeanTo(b, a)) / 2; }
+
+class RealThorax : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    if (!std::filesystem::exists(kRealFolder)) return;
+    std::ifstream file(PHRENIC_SCENES_DIR "/thorax-patient.textproto");
+    std::stringstream text;
+    text << file.rdbuf();
+    const v1::Scene scene = *schema::ParseScene("thorax-patient.textproto", text.str());
+    const BodySource source = [](const v1::Body& body) {
+      return meshio::ReadFile((kRealFolder / body.file().path()).string(), body.file().unit());
+    };
+    std::vector<PatientBody> bodies = *ReadSurfaces(source, scene);
+    for (PatientBody& body : bodies) {
+      (body.anatomy.structure() == v1::STRUCTURE_DIAPHRAGM ? diaphragm_ : surfaces_).push_back(std::move(body));
+    }
+    seen_ = *VoxeliseParts(surfaces_);
+  }
+  void SetUp() override {
+    if (surfaces_.empty()) GTEST_SKIP() << "no " << kRealFolder;
+  }
+  static FilledParts FillWithout(const std::function<bool(const Part&)>& gone, const TemplateFit* fit = nullptr) {
+    std::vector<Part> parts = seen_.parts;
+    std::erase_if(parts, gone);
+    return FillFromTemplate(seen_.volume, std::move(parts), fit);
+  }
+  // Returns the mean distance of the filled ribs from the real ones [mm].
+  static double RibsOff(const FilledParts& filled) {
+    double sum = 0, count = 0;
+    for (const Part& part : filled.parts) {
+      const auto real = std::ranges::find_if(surfaces_, [&part](const PatientBody& body) {
+        return body.anatomy.SerializeAsString() == part.anatomy.SerializeAsString();
+      });
+      if (!part.filled || !part.Is(v1::STRUCTURE_RIB) || real == surfaces_.end()) continue;
+      sum += Assd(part.surface, real->mesh), ++count;
+    }
+    return sum / count;
+  }
+  static double DiaphragmOff(const LabelVolume& volume, const std::vector<Part>& parts) {
+    Messages ignored;
+    const auto frame = FindCageFrame(volume, parts, ignored);
+    const FittedCage cage(volume, parts, *frame, ignored);
+    DiaphragmOptions options;
+    options.vertices = 2500;
+    const auto derived = DeriveDiaphragm(volume, parts, *frame, cage, options, ignored);
+    EXPECT_TRUE(derived.ok()) << derived.status();
+    return derived.ok() ? Assd(derived->mesh, diaphragm_.front().mesh) : 1e3;
+  }
+
+  inline static std::vector<PatientBody> surfaces_, diaphragm_;
+  inline static VoxelisedParts seen_;
+};
+
+bool IsOfCage(const Part& part) {
+  return part.Is(v1::STRUCTURE_RIB) || part.Is(v1::STRUCTURE_COSTAL_CARTILAGE) || part.Is(v1::STRUCTURE_STERNUM_BODY) ||
+         part.Is(v1::STRUCTURE_MANUBRIUM) || part.Is(v1::STRUCTURE_XIPHOID);
+}
+
+TEST_F(RealThorax, RibsFromLungsAndSpineAreCloserThanTheUnregisteredTemplate) {
+  const FilledParts filled = FillWithout(IsOfCage);
+  ASSERT_TRUE(filled.report.not_filled().empty()) << filled.report.not_filled();
+  TemplateFit centred;  // the template in its own size, at the same place
+  for (int axis = 0; axis < 3; ++axis) centred.shift[axis] = 0;
+  const auto fit = FitTemplate(seen_.volume, seen_.parts, false);
+  ASSERT_TRUE(fit.ok()) << fit.status();
+  centred.shift = fit->ToPerson({0, 20, 200}) - Eigen::Vector3d(0, 20, 200);
+  const double off = RibsOff(filled), without = RibsOff(FillWithout(IsOfCage, &centred));
+  std::printf("real thorax, ribs from lungs and spine: assd %.1f mm, fit %.1f mm; unscaled %.1f mm\n", off,
+              filled.report.residual_mm(), without);
+  EXPECT_LT(off, 12);
+  EXPECT_LT(off, without);
+}
+
+TEST_F(RealThorax, TheFilledHeartKeepsTheSheetDown) {
+  const FilledParts filled = FillWithout([](const Part&) { return false; });
+  const double off = DiaphragmOff(filled.volume, filled.parts), without = DiaphragmOff(seen_.volume, seen_.parts);
+  std::printf("real thorax without heart and liver, diaphragm: assd %.1f mm filled, %.1f mm not filled\n", off,
+              without);
+  EXPECT_LT(off, without);
+}
+
+}  // namespace
+}  // namespace phrenic::imaging
