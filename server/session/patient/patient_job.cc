@@ -54,6 +54,7 @@ absl::StatusOr<imaging::Patient> PatientJob::Make(imaging::PatientProgress progr
   imaging::PatientOptions options;
   options.name = kPatientName;
   if (start_.request.has_vertices()) options.diaphragm.vertices = start_.request.vertices();
+  if (start_.request.has_edge_length_mm()) options.edge_length = start_.request.edge_length_mm();
   return imaging::MakePatient(*volume, *map, start_.pattern, options, [&](double done, std::string_view doing) {
     return progress(kReading + (1 - kReading) * done, doing);
   });

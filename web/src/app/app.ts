@@ -305,7 +305,11 @@ export class App {
     );
     elementById("cards").append(...tools.cards, this.comparisonCard.element);
     new ResizeObserver(() => this.resize()).observe(elementById("cards"));
-    const drop = dropZone(document.body, (file) => void this.comparisons.compare(file));
+    const drop = dropZone(
+      document.body,
+      (file) => void this.comparisons.compare(file),
+      (dropped) => void this.chooser.importPatient(dropped),
+    );
     elementById("stage").append(drop, tools.forceLabel, tools.structures.label, ...tools.measuring.overlays);
     if (this.secondView !== undefined) {
       elementById("stage").classList.add("split");
