@@ -31,8 +31,8 @@ export class LabelTable {
     if (lowMm !== undefined && highMm !== undefined) {
       const range = (low: number, high: number) => `${fixed(low, 0)} … ${fixed(high, 0)}`;
       const { x, y, z } = highMm;
-      const words = "Frame of the scan: left {0}, back {1}, up {2} mm";
-      lines.push(t(words, range(lowMm.x, x), range(lowMm.y, y), range(lowMm.z, z)));
+      const [left, back, up] = [range(lowMm.x, x), range(lowMm.y, y), range(lowMm.z, z)];
+      lines.push(t("Frame of the scan: left {0}, back {1}, up {2} mm", left, back, up));
     }
     lines.push(t("{0} labels, {1} of them unknown", labels.length, unknown));
     const facts = lines.map((line) => make("p", { className: "faint" }, line));
