@@ -64,9 +64,12 @@ absl::Status ReadVoxels(ByteReader reader, std::size_t count, std::vector<Label>
 }
 
 absl::Status CheckVoxels(std::string_view name, const NiftiHeader& header, std::size_t max_voxels) {
-  if (header.voxels() <= max_voxels) return absl::OkStatus();
-  return absl::ResourceExhaustedError(absl::StrCat(std::string(name), ": has ", header.voxels(), " voxels, more than ",
-                                                   max_voxels, "; crop it to the thorax or resample it"));
+  // As many voxels as the header declares are inflated before they become labels of 2 bytes.
+  const bool wide = max_voxels < kMaxVoxels && header.voxels() > max_voxels * sizeof(Label) / header.voxel_bytes;
+  if (header.voxels() <= max_voxels && !wide) return absl::OkStatus();
+  return absl::ResourceExhaustedError(absl::StrCat(
+      std::string(name), ": has ", header.voxels(), " voxels of ", header.voxel_bytes, " bytes, more than ", max_voxels,
+      " of 1 or 2 bytes; crop it to the thorax, or save it as uint8 or uint16"));
 }
 
 absl::StatusOr<LabelVolume> ParsePlain(std::string_view name, std::string_view bytes, std::size_t max_voxels) {

@@ -78,7 +78,7 @@ test("ADroppedDicomSegmentationBecomesABreathingPatient", async () => {
   expect(viewer.consoleErrors).toEqual([]);
   await viewer.close();
   expect(await readFile(join(outFolder, "phrenicd.log"), "utf8")).not.toMatch(/DOE\^JANE|Doe\^Jane/);
-});
+}, 400_000);
 
 test.runIf(existsSync(slab))("ASlabIsRefusedWithItsReasons", async () => {
   const viewer = await ViewerPage.open(browser, `${server.url}?session=cube&lang=de`, { width: 1280, height: 900 });
@@ -96,4 +96,4 @@ test.runIf(existsSync(slab))("ASlabIsRefusedWithItsReasons", async () => {
   await page.waitForSelector("#patient-file");
   expect(viewer.consoleErrors).toEqual([]);
   await viewer.close();
-});
+}, 300_000);
