@@ -13,7 +13,7 @@ constexpr auto kController = v1::ACCESS_ROLE_CONTROLLER;
 constexpr auto kOwner = v1::ACCESS_ROLE_OWNER;
 constexpr bool kChanges = true, kReads = false, kOpen = true;
 
-// Columns as in Rule. The services also check that exports, studies and uploads belong to the caller
+// Columns as in Rule. The services also check that exports, studies, patients and uploads belong to the caller
 // (AccessGuard::CheckOwns).
 constexpr Rule kRules[] = {
     {"ServerService.GetServer", kNone, kNone, kReads, kOpen},
@@ -67,6 +67,10 @@ constexpr Rule kRules[] = {
     {"UploadService.FinishUpload", kOwner, kNone, kChanges},
     {"UploadService.ListUploads", kOwner, kNone, kReads},
     {"UploadService.DeleteUpload", kOwner, kNone, kChanges},
+    {"PatientService.InspectLabels", kOwner, kNone, kReads},
+    {"PatientService.CreatePatient", kOwner, kNone, kChanges},
+    {"PatientService.WatchPatient", kNone, kNone, kReads},
+    {"PatientService.DeletePatient", kNone, kNone, kChanges},
     {"StudyService.CreateStudy", kOwner, kNone, kChanges},
     {"StudyService.WatchStudy", kNone, kNone, kReads},
     {"StudyService.ListStudies", kNone, kNone, kReads},

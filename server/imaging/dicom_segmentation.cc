@@ -116,7 +116,7 @@ void WriteFrames(const DicomPixels& pixels, const DicomFrames& frames, const Sli
       absl::StrCat("segments overlap in ", overlaps, " voxels; the segment with the higher number counts there"));
 }
 
-absl::StatusOr<LabelVolume> ReadSegmentation(DcmDataset& dataset) {
+absl::StatusOr<LabelVolume> ReadSegmentation(DcmDataset& dataset, std::size_t max_voxels) {
   const absl::StatusOr<DicomPixels> pixels = ReadDicomPixels(dataset);
   if (!pixels.ok()) return pixels.status();
   const absl::StatusOr<DicomFrames> frames = ReadDicomFrames(dataset, pixels->frames, pixels->label_map);
@@ -124,9 +124,10 @@ absl::StatusOr<LabelVolume> ReadSegmentation(DcmDataset& dataset) {
   const absl::StatusOr<SliceStack> stack = StackSlices(frames->plane, frames->positions, frames->spacing);
   if (!stack.ok()) return stack.status();
   if (absl::Status status = CheckSingle(*frames, *stack); !status.ok()) return status;
-  if (pixels->in_frame() > kMaxVoxels / stack->slices) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("its volume has more than ", kMaxVoxels, " voxels; crop the segmentation to the thorax"));
+  if (pixels->in_frame() > max_voxels / stack->slices) {
+    const std::string problem =
+        absl::StrCat("its volume has more than ", max_voxels, " voxels; crop the segmentation to the thorax");
+    return max_voxels < kMaxVoxels ? absl::ResourceExhaustedError(problem) : absl::InvalidArgumentError(problem);
   }
   LabelVolume volume;
   volume.size = {static_cast<int>(pixels->columns), static_cast<int>(pixels->rows), stack->slices};
@@ -139,7 +140,8 @@ absl::StatusOr<LabelVolume> ReadSegmentation(DcmDataset& dataset) {
 
 }  // namespace
 
-absl::StatusOr<LabelVolume> ParseDicomSegmentation(std::string_view name, std::string_view bytes) {
+absl::StatusOr<LabelVolume> ParseDicomSegmentation(std::string_view name, std::string_view bytes,
+                                                   std::size_t max_voxels) {
   const auto named = [name](const absl::Status& status) {
     return absl::Status(status.code(), absl::StrCat(std::string(name), ": ", std::string(status.message())));
   };
@@ -149,7 +151,7 @@ absl::StatusOr<LabelVolume> ParseDicomSegmentation(std::string_view name, std::s
   const bool contours = sop_class == UID_RTStructureSetStorage;
   if (absl::Status status = contours ? absl::OkStatus() : CheckSopClass(sop_class); !status.ok()) return named(status);
   DcmDataset& dataset = *(*file)->getDataset();
-  absl::StatusOr<LabelVolume> volume = contours ? ReadRtStructures(dataset) : ReadSegmentation(dataset);
+  absl::StatusOr<LabelVolume> volume = contours ? ReadRtStructures(dataset) : ReadSegmentation(dataset, max_voxels);
   if (!volume.ok()) return named(volume.status());
   return volume;
 }

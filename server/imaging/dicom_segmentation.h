@@ -16,8 +16,9 @@ namespace phrenic::imaging {
 // the segments' labels, `meanings` those of their types' codes with laterality: "Upper lobe of lung Left". Pixels may
 // be uncompressed, deflated with the file, or RLE. The contours of an RT Structure Set are filled
 // (rt_structures.h). Reads nothing that identifies a patient. INVALID_ARGUMENT "name:
-// ..." with problem and remedy, also for other kinds of DICOM objects. Thread-safe.
-absl::StatusOr<LabelVolume> ParseDicomSegmentation(std::string_view name, std::string_view bytes);
+// ..." with problem and remedy, also for other kinds of DICOM objects; RESOURCE_EXHAUSTED for more voxels. Thread-safe.
+absl::StatusOr<LabelVolume> ParseDicomSegmentation(std::string_view name, std::string_view bytes,
+                                                   std::size_t max_voxels = kMaxVoxels);
 
 }  // namespace phrenic::imaging
 

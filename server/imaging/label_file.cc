@@ -7,13 +7,22 @@
 #include "absl/strings/str_cat.h"
 #include "server/imaging/dicom_file.h"
 #include "server/imaging/dicom_segmentation.h"
+#include "server/imaging/gzip.h"
 #include "server/imaging/nifti.h"
+#include "server/imaging/nifti_header.h"
 #include "server/schema/file_bytes.h"
 
 namespace phrenic::imaging {
 
-absl::StatusOr<LabelVolume> ParseLabels(std::string_view name, std::string_view bytes) {
-  return IsDicom(bytes) ? ParseDicomSegmentation(name, bytes) : ParseNifti(name, bytes);
+absl::StatusOr<LabelVolume> ParseLabels(std::string_view name, std::string_view bytes, std::size_t max_voxels) {
+  return IsDicom(bytes) ? ParseDicomSegmentation(name, bytes, max_voxels) : ParseNifti(name, bytes, max_voxels);
+}
+
+absl::Status CheckLabelFormat(std::string_view name, std::string_view bytes) {
+  if (IsDicom(bytes)) return absl::OkStatus();
+  if (!IsGzip(bytes)) return ParseNiftiHeader(name, bytes).status();
+  const absl::StatusOr<std::string> start = Inflate(name, bytes, kMaxHeader);
+  return start.ok() ? ParseNiftiHeader(name, *start).status() : start.status();
 }
 
 absl::StatusOr<LabelVolume> ReadLabels(const std::string& path) {

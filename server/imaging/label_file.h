@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_IMAGING_LABEL_FILE_H_
 #define PHRENIC_SERVER_IMAGING_LABEL_FILE_H_
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -11,8 +12,13 @@
 namespace phrenic::imaging {
 
 // Parses a DICOM Segmentation (dicom_segmentation.h) or a NIfTI file (nifti.h). The content decides, not the name's
-// ending. INVALID_ARGUMENT "name: ..." with problem and remedy. Thread-safe.
-absl::StatusOr<LabelVolume> ParseLabels(std::string_view name, std::string_view bytes);
+// ending. INVALID_ARGUMENT "name: ..." with problem and remedy; RESOURCE_EXHAUSTED for a volume of more voxels, before
+// their memory is taken. Thread-safe.
+absl::StatusOr<LabelVolume> ParseLabels(std::string_view name, std::string_view bytes,
+                                        std::size_t max_voxels = kMaxVoxels);
+
+// INVALID_ARGUMENT "name: ..." if the first bytes are those of neither DICOM nor NIfTI. Reads no more. Thread-safe.
+absl::Status CheckLabelFormat(std::string_view name, std::string_view bytes);
 
 // Reads and parses a file. NOT_FOUND names the path, and says so if it is a folder.
 absl::StatusOr<LabelVolume> ReadLabels(const std::string& path);

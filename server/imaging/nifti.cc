@@ -63,9 +63,19 @@ absl::Status ReadVoxels(ByteReader reader, std::size_t count, std::vector<Label>
   return absl::OkStatus();
 }
 
-absl::StatusOr<LabelVolume> ParsePlain(std::string_view name, std::string_view bytes) {
+absl::Status CheckVoxels(std::string_view name, const NiftiHeader& header, std::size_t max_voxels) {
+  // As many voxels as the header declares are inflated before they become labels of 2 bytes.
+  const bool wide = max_voxels < kMaxVoxels && header.voxels() > max_voxels * sizeof(Label) / header.voxel_bytes;
+  if (header.voxels() <= max_voxels && !wide) return absl::OkStatus();
+  return absl::ResourceExhaustedError(absl::StrCat(
+      std::string(name), ": has ", header.voxels(), " voxels of ", header.voxel_bytes, " bytes, more than ", max_voxels,
+      " of 1 or 2 bytes; crop it to the thorax, or save it as uint8 or uint16"));
+}
+
+absl::StatusOr<LabelVolume> ParsePlain(std::string_view name, std::string_view bytes, std::size_t max_voxels) {
   const absl::StatusOr<NiftiHeader> header = ParseNiftiHeader(name, bytes);
   if (!header.ok()) return header.status();
+  if (absl::Status status = CheckVoxels(name, *header, max_voxels); !status.ok()) return status;
   if (bytes.size() < header->end()) {
     return absl::InvalidArgumentError(absl::StrCat(std::string(name), ": truncated: the header declares ",
                                                    header->end(), " bytes, the file has ", bytes.size(),
@@ -102,12 +112,13 @@ std::string NamesExtension(const std::map<int, std::string>& names) {
 
 }  // namespace
 
-absl::StatusOr<LabelVolume> ParseNifti(std::string_view name, std::string_view bytes) {
-  if (!IsGzip(bytes)) return ParsePlain(name, bytes);
+absl::StatusOr<LabelVolume> ParseNifti(std::string_view name, std::string_view bytes, std::size_t max_voxels) {
+  if (!IsGzip(bytes)) return ParsePlain(name, bytes, max_voxels);
   const absl::StatusOr<std::string> start = Inflate(name, bytes, kMaxHeader);
   if (!start.ok()) return start.status();
   const absl::StatusOr<NiftiHeader> header = ParseNiftiHeader(name, *start);
   if (!header.ok()) return header.status();
+  if (absl::Status status = CheckVoxels(name, *header, max_voxels); !status.ok()) return status;
   if (header->end() / kMaxDeflateRatio > bytes.size()) {
     return absl::InvalidArgumentError(absl::StrCat(std::string(name), ": the header declares ", header->end(),
                                                    " bytes, more than a file of ", bytes.size(), " can hold"));
@@ -115,7 +126,7 @@ absl::StatusOr<LabelVolume> ParseNifti(std::string_view name, std::string_view b
   // Ask for one more byte, so that zlib reaches the end of the stream and verifies the checksum.
   const absl::StatusOr<std::string> whole = Inflate(name, bytes, header->end() + 1);
   if (!whole.ok()) return whole.status();
-  return ParsePlain(name, *whole);
+  return ParsePlain(name, *whole, max_voxels);
 }
 
 std::string WriteNifti(const LabelVolume& volume) {

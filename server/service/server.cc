@@ -30,6 +30,7 @@
 #include "server/service/lti_forms.h"
 #include "server/service/memory_trimmer.h"
 #include "server/service/net/grpc_listener.h"
+#include "server/service/patient_service.h"
 #include "server/service/periodic_task.h"
 #include "server/service/reference_service.h"
 #include "server/service/routing/forwarding_service.h"
@@ -44,6 +45,7 @@
 #include "server/service/web/web_gateway.h"
 #include "server/service/web_pages.h"
 #include "server/session/export/exports.h"
+#include "server/session/patient/patients.h"
 #include "server/session/table.h"
 #include "server/store/store.h"
 
@@ -138,6 +140,8 @@ struct Server::Parts {
         exports(options.limits, options.spool_dir, clock, store.get(), options.web_root + "/offline.html"),
         export_service(table, exports, guard),
         upload_service(uploads, options.limits, guard),
+        patients(models, uploads, options.limits, clock),
+        patient_service(patients, options.limits, guard),
         study_service(models, options.web_root, guard, clock, options.limits, store.get()),
         compare_service(table, options.limits, guard),
         fit_service(models, options.limits, guard),
@@ -196,6 +200,8 @@ struct Server::Parts {
   session::Exports exports;
   ExportService export_service;
   UploadService upload_service;
+  session::Patients patients;
+  PatientService patient_service;
   StudyService study_service;
   CompareService compare_service;
   FitService fit_service;
@@ -259,6 +265,7 @@ void Server::Parts::AddCalls() {
   tissue_service.AddTo(calls);
   export_service.AddTo(calls);
   upload_service.AddTo(calls);
+  patient_service.AddTo(calls);
   study_service.AddTo(calls);
   compare_service.AddTo(calls);
   fit_service.AddTo(calls);

@@ -42,8 +42,10 @@ grpc::Status UploadService::BeginUpload(grpc::CallbackServerContext* context, co
                                         v1::BeginUploadResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
+  const auto kind =
+      request->kind() == v1::UPLOAD_KIND_LABELS ? session::Uploads::Kind::kLabels : session::Uploads::Kind::kSurface;
   const auto begun =
-      uploads_.Begin(guard_.RequesterOf(*caller, *context), request->name(), request->size(), request->sha256());
+      uploads_.Begin(guard_.RequesterOf(*caller, *context), request->name(), request->size(), request->sha256(), kind);
   if (!begun.ok()) return ToGrpc(begun.status());
   response->set_upload_id(begun->id);
   response->set_received(begun->received);
@@ -73,7 +75,9 @@ grpc::Status UploadService::FinishUpload(grpc::CallbackServerContext* context, c
   const auto finished = uploads_.Finish(guard_.RequesterOf(*caller, *context), request->upload_id(), unit_mm);
   if (!finished.ok()) return ToGrpc(finished.status());
   Fill(finished->file, *response->mutable_file());
-  *response->mutable_report() = compare::Inspect(finished->file.name, finished->surface, unit_mm);
+  if (finished->surface.has_value()) {
+    *response->mutable_report() = compare::Inspect(finished->file.name, *finished->surface, unit_mm);
+  }
   return grpc::Status::OK;
 }
 

@@ -1,4 +1,4 @@
-// v1.UploadService: surface files from clients, in chunks that can be resumed.
+// v1.UploadService: surface files and label volumes from clients, in chunks that can be resumed.
 #ifndef PHRENIC_SERVER_SERVICE_UPLOAD_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_UPLOAD_SERVICE_H_
 

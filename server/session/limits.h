@@ -23,10 +23,10 @@ struct Limits {
   int export_minutes = 60;            // how long a file is kept for download
   std::int64_t upload_bytes = std::int64_t{256} << 20;  // of one file
   std::int64_t uploads_bytes = std::int64_t{1} << 30;   // of all of them
-  int uploads = 256;                                    // kept
+  int uploads = 1024;                                   // kept; a patient has 60
   // Of each account, on a server with accounts.
   std::int64_t uploads_bytes_of_user = std::int64_t{256} << 20;
-  int uploads_of_user = 64;   // kept
+  int uploads_of_user = 256;  // kept
   double pause_minutes = 5;   // a session without viewers or calls plays on; 0: forever
   double delete_minutes = 0;  // a session without viewers or calls is kept; 0: forever
   double share = 0.75;  // fraction of viewers, exports, comparisons, checks, batches, fits and studies of a caller

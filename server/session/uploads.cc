@@ -9,6 +9,7 @@
 #include "absl/time/clock.h"
 #include "server/crypto/secret.h"
 #include "server/crypto/sha256.h"
+#include "server/imaging/label_file.h"
 #include "server/mesh/units.h"
 #include "server/meshio/formats.h"
 
@@ -49,6 +50,17 @@ bool IsSurfaceName(const std::string& name) {
   });
 }
 
+// Parses a surface; of labels, looks whether they can be some.
+absl::StatusOr<Uploads::Finished> Checked(const Uploads::Held& held, const std::string& bytes, double unit_mm) {
+  if (held.kind == Uploads::Kind::kLabels) {
+    if (absl::Status labels = imaging::CheckLabelFormat(held.file.name, bytes); !labels.ok()) return labels;
+    return Uploads::Finished{held.file, std::nullopt};
+  }
+  auto surface = meshio::ParseSurface(held.file.name, bytes, kMillimetre * unit_mm);
+  if (!surface.ok()) return surface.status();
+  return Uploads::Finished{held.file, *std::move(surface)};
+}
+
 }  // namespace
 
 absl::StatusOr<std::string> Uploads::Held::Bytes() const {
@@ -60,13 +72,13 @@ absl::StatusOr<std::string> Uploads::Held::Bytes() const {
 Uploads::Uploads(const Limits& limits, std::string spool_folder)
     : limits_(limits), spool_folder_(std::move(spool_folder)) {}
 
-absl::Status Uploads::CheckFile(const std::string& name, std::int64_t size) const {
+absl::Status Uploads::CheckFile(const std::string& name, std::int64_t size, Kind kind) const {
   constexpr std::size_t kLongestName = 255;
   if (name.size() > kLongestName) {
     return absl::InvalidArgumentError(
         absl::StrCat("name: has ", name.size(), " bytes; ", kLongestName, " are the most"));
   }
-  if (!IsSurfaceName(name)) {
+  if (kind == Kind::kSurface && !IsSurfaceName(name)) {
     return absl::InvalidArgumentError(
         absl::StrCat("name: the ending of \"", name, "\" is no known format; there are ", meshio::Endings()));
   }
@@ -103,9 +115,10 @@ absl::Status Uploads::MakeRoomToBegin(const std::string& owner, std::int64_t siz
   return fits ? absl::OkStatus() : NoRoom(limits_.uploads_bytes);
 }
 
-absl::StatusOr<Uploads::Begun> Uploads::Begin(const Requester& by, const std::string& name, std::int64_t size,
-                                              const std::string& sha256) {
-  if (absl::Status status = CheckFile(name, size); !status.ok()) return status;
+absl::StatusOr<Uploads::Begun> Uploads::Begin(const Requester& by, const std::string& given, std::int64_t size,
+                                              const std::string& sha256, Kind kind) {
+  const std::string name = kind == Kind::kLabels ? kLabelsName : given;
+  if (absl::Status status = CheckFile(name, size, kind); !status.ok()) return status;
   if (!sha256.empty() && sha256.size() != Sha256Hex("").size()) {
     return absl::InvalidArgumentError("sha256: is not the 64 hexadecimal digits of a SHA-256");
   }
@@ -124,7 +137,7 @@ absl::StatusOr<Uploads::Begun> Uploads::Begin(const Requester& by, const std::st
   if (absl::Status status = MakeRoomToBegin(by.owner, size); !status.ok()) return status;
   auto spool = record::SpoolFile::Open(spool_folder_);
   if (!spool.ok()) return spool.status();
-  pending_.push_back({NewToken(), {sha256, name, size}, *std::move(spool), by.owner, absl::Now()});
+  pending_.push_back({NewToken(), {sha256, name, size}, *std::move(spool), by.owner, absl::Now(), kind});
   return Begun{pending_.back().id, 0, pending_.back().file};
 }
 
@@ -174,11 +187,11 @@ absl::StatusOr<Uploads::Finished> Uploads::Finish(const Requester& by, const std
                                             pending.file.sha256, "): send it again"));
   }
   pending.file.sha256 = sha256;
-  auto surface = meshio::ParseSurface(pending.file.name, *bytes, kMillimetre * unit_mm);
-  if (!surface.ok()) return surface.status();
+  auto finished = Checked(pending, *bytes, unit_mm);
+  if (!finished.ok()) return finished;
   absl::MutexLock lock(&mutex_);
   if (absl::Status status = Keep(pending); !status.ok()) return status;
-  return Finished{pending.file, *std::move(surface)};
+  return finished;
 }
 
 absl::StatusOr<Uploads::Finished> Uploads::FinishedBefore(const Requester& by, const std::string& id,
@@ -194,9 +207,7 @@ absl::StatusOr<Uploads::Finished> Uploads::FinishedBefore(const Requester& by, c
   }
   const auto bytes = held.Bytes();
   if (!bytes.ok()) return bytes.status();
-  auto surface = meshio::ParseSurface(held.file.name, *bytes, kMillimetre * unit_mm);
-  if (!surface.ok()) return surface.status();
-  return Finished{held.file, *std::move(surface)};
+  return Checked(held, *bytes, unit_mm);
 }
 
 absl::Status Uploads::Keep(Held& kept) {

@@ -1,10 +1,11 @@
-// Surface files that clients upload, identified by their owner and their content.
+// Surface files and label volumes that clients upload, identified by their owner and their content.
 #ifndef PHRENIC_SERVER_SESSION_UPLOADS_H_
 #define PHRENIC_SERVER_SESSION_UPLOADS_H_
 
 #include <cstdint>
 #include <list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,7 @@ class Uploads {
     std::int64_t size = 0;     // [bytes]
     std::string path() const { return std::string(kPrefix) + sha256; }
   };
+  enum class Kind { kSurface, kLabels };
   struct Begun {
     std::string id;             // 128 random bits; empty if the owner has the file already
     std::int64_t received = 0;  // [bytes]
@@ -39,7 +41,7 @@ class Uploads {
   };
   struct Finished {
     File file;
-    meshio::Surface surface;  // [m]
+    std::optional<meshio::Surface> surface;  // [m]; nullopt of labels
   };
   // Keeps a file as long as this object exists, even if Uploads drops it. Copies share the file on the disk.
   struct Held {
@@ -48,10 +50,12 @@ class Uploads {
     std::shared_ptr<record::SpoolFile> spool;
     std::string owner = {};                  // Requester::owner
     absl::Time used = absl::InfinitePast();  // the beginning, or the last chunk, of an unfinished upload
+    Kind kind = Kind::kSurface;
     // Reads the whole file into memory. The errors of record::SpoolFile::Read.
     absl::StatusOr<std::string> Bytes() const;
   };
   static constexpr std::string_view kPrefix = "upload:";
+  static constexpr const char* kLabelsName = "labels";             // of every label volume: theirs may be a person's
   static constexpr std::size_t kMostChunk = std::size_t{4} << 20;  // [bytes]
 
   // Uses upload_bytes, uploads_bytes, uploads and their limits of a user.
@@ -62,9 +66,10 @@ class Uploads {
   // no room. Clients of one owner that upload the same file at the same time share one upload: Add skips the bytes that
   // it has, and each client may finish it. NOT_FOUND for an upload of another owner. An unfinished upload is abandoned
   // after 10 minutes without a chunk: then others may take its room. The limits count unfinished and finished uploads
-  // separately. `unit_mm` is the length of the file's unit [mm].
+  // separately. `unit_mm` is the length of the unit of a surface [mm]; of labels, Finish looks at the first bytes
+  // alone.
   absl::StatusOr<Begun> Begin(const Requester& by, const std::string& name, std::int64_t size,
-                              const std::string& sha256) ABSL_LOCKS_EXCLUDED(mutex_);
+                              const std::string& sha256, Kind kind = Kind::kSurface) ABSL_LOCKS_EXCLUDED(mutex_);
   absl::StatusOr<std::int64_t> Add(const Requester& by, const std::string& id, std::int64_t offset,
                                    std::string_view chunk) ABSL_LOCKS_EXCLUDED(mutex_);
   absl::StatusOr<Finished> Finish(const Requester& by, const std::string& id, double unit_mm)
@@ -86,9 +91,9 @@ class Uploads {
  private:
   using Files = std::list<Held>;
 
-  // INVALID_ARGUMENT for a name that is too long or has an unknown ending, and for an empty file; RESOURCE_EXHAUSTED
-  // for a file above limits.upload_bytes.
-  absl::Status CheckFile(const std::string& name, std::int64_t size) const;
+  // INVALID_ARGUMENT for a surface's name that is too long or has an unknown ending, and for an empty file;
+  // RESOURCE_EXHAUSTED for a file above limits.upload_bytes.
+  absl::Status CheckFile(const std::string& name, std::int64_t size, Kind kind) const;
   // Parses a file whose upload another client, or an earlier call, has finished. NOT_FOUND if no such upload exists.
   absl::StatusOr<Finished> FinishedBefore(const Requester& by, const std::string& id, double unit_mm) const
       ABSL_LOCKS_EXCLUDED(mutex_);

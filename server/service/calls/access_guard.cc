@@ -223,8 +223,9 @@ bool AccessGuard::MayUse(const std::string& owner, const Caller& caller) const {
 absl::Status AccessGuard::CheckOwns(Kind kind, const std::string& id, const std::optional<std::string>& owner,
                                     const Caller& caller) const {
   if (MayUse(owner.value_or(""), caller)) return absl::OkStatus();
-  const char* what = kind == Kind::kExport ? "export_id: there is no export \"" : "study_id: there is no study \"";
-  return absl::NotFoundError(absl::StrCat(what, id.substr(0, 80), "\" that belongs to you"));
+  const char* what = kind == Kind::kExport ? "export" : kind == Kind::kStudy ? "study" : "patient";
+  return absl::NotFoundError(
+      absl::StrCat(what, "_id: there is no ", what, " \"", id.substr(0, 80), "\" that belongs to you"));
 }
 
 std::optional<std::string> AccessGuard::Known(std::string_view authorization, std::string_view join) const {

@@ -32,7 +32,7 @@ class AccessGuard {
  public:
   // Resources outside of sessions that belong to the caller who made them; they know their owner. CheckOwns names the
   // kind in its error.
-  enum class Kind { kExport, kStudy };
+  enum class Kind { kExport, kStudy, kPatient };
 
   // All references outlive the guard. `max_requests` is per caller [1/s]; 0 means no limit.
   AccessGuard(const access::Accounts& accounts, access::AuditLog& audit, const session::Table& table, Metrics& metrics,

@@ -43,6 +43,7 @@ const tables: Record<string, string[]> = {
   "panels/view/view_bar.ts": ["buttons"],
   "panels/comparison/view_headers.ts": ["words"],
   "panels/readings/probes.ts": ["heads"],
+  "patient/patient_dialog.ts": ["verdicts"],
   "viewer/viewpoints.ts": ["directions", "cuts"],
 };
 

@@ -6,8 +6,10 @@ import { type ConnectionListener, type ConnectionState, SessionConnection } from
 import { download } from "../dom/download";
 import { ownStorage } from "../dom/storage";
 import { elementById } from "../dom/elements";
+import { loadOnOpen, section } from "../dom/rows";
 import { FilmMaker, type OpenWriter } from "../film/film_maker";
 import { inPageLanguage } from "../language/page_words";
+import { t } from "../language/translate";
 import { recordedMotion } from "../film/recorded_motion";
 import type { DisplayedFrame, FrameBuffer } from "../frames/frame_buffer";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
@@ -21,7 +23,6 @@ import { distancePanel } from "../panels/comparison/distance_panel";
 import { presetComparison } from "../panels/comparison/preset_comparison";
 import { exportPanel } from "../panels/jobs/export_panel";
 import { animationRow, filmRow, takeHomeRow } from "../panels/jobs/take_home";
-import { studiesPanel } from "../panels/jobs/studies_panel";
 import { uploadPanel } from "../panels/jobs/upload_panel";
 import { parameterSections } from "../panels/parameters/parameter_sections";
 import { GraphsPanel } from "../panels/readings/graphs";
@@ -51,7 +52,6 @@ import type { LessonPlace } from "../session/lessons";
 import type { PageView } from "../session/page_view";
 import { Participation, refusalReason } from "../session/participation";
 import { SessionController } from "../session/session_controller";
-import { Studies } from "../session/studies";
 import { Uploads } from "../session/uploads";
 import { Signal } from "../state/signal";
 import type { Clock } from "../timing/clock";
@@ -305,7 +305,11 @@ export class App {
     );
     elementById("cards").append(...tools.cards, this.comparisonCard.element);
     new ResizeObserver(() => this.resize()).observe(elementById("cards"));
-    const drop = dropZone(document.body, (file) => void this.comparisons.compare(file));
+    const drop = dropZone(
+      document.body,
+      (file) => void this.comparisons.compare(file),
+      (dropped) => void this.chooser.importPatient(dropped),
+    );
     elementById("stage").append(drop, tools.forceLabel, tools.structures.label, ...tools.measuring.overlays);
     if (this.secondView !== undefined) {
       elementById("stage").classList.add("split");
@@ -338,12 +342,21 @@ export class App {
       this.probes.element,
       this.measures.element,
       distancePanel(this.comparisons, this.bodies, this.uploads.extensions),
-      studiesPanel(new Studies(this.api, this.clock), controller),
+      this.studiesPanel(),
       exportPanel(this.exports, this.bodies),
       uploadPanel(this.uploads),
       compileReportPanel(this.report),
     );
     elementById("graphs").append(this.graphs.element);
+  }
+
+  /** Returns the section of studies, whose code is loaded when it is opened. */
+  private studiesPanel(): HTMLElement {
+    const panel = section(t("Studies"), false);
+    return loadOnOpen(panel, async () => {
+      const { fillStudies } = await import("../panels/jobs/studies_panel");
+      fillStudies(panel, this.api, this.clock, this.controller);
+    });
   }
 
   private buildHeader(): void {

@@ -1,12 +1,25 @@
 import { make } from "../dom/elements";
 import { t } from "../language/translate";
 
-/** Accepts files that are dropped anywhere on the page, and shows a hint while a file is dragged over it. */
-export function dropZone(page: HTMLElement, take: (file: File) => void): HTMLElement {
+/** What is dropped on the page: files, and the folders among them. */
+export interface Dropped {
+  files: File[];
+  entries: FileSystemEntry[];
+}
+
+/**
+ * Accepts what is dropped anywhere on the page, and shows a hint while it is dragged over it. `take` gets a surface,
+ * `takeLabels` label volumes and folders.
+ */
+export function dropZone(
+  page: HTMLElement,
+  take: (file: File) => void,
+  takeLabels: (dropped: Dropped) => void,
+): HTMLElement {
   const words = make(
     "div",
     { className: "drop-zone", hidden: true },
-    make("p", {}, t("Drop the file to compare with it")),
+    make("p", {}, t("Drop a surface to compare with it, or a segmentation to make a patient of it")),
   );
   words.setAttribute("aria-hidden", "true");
   page.addEventListener("dragover", (event) => {
@@ -22,8 +35,16 @@ export function dropZone(page: HTMLElement, take: (file: File) => void): HTMLEle
     if (!holdsFiles(event)) return;
     event.preventDefault();
     words.hidden = true;
-    const [file] = event.dataTransfer?.files ?? [];
-    if (file !== undefined) take(file);
+    const files = [...(event.dataTransfer?.files ?? [])];
+    const entries = [...(event.dataTransfer?.items ?? [])].flatMap((item) => item.webkitGetAsEntry() ?? []);
+    // A folder, many files, NIfTI, and DICOM, whose files may have no ending.
+    if (
+      files.length > 1 ||
+      entries.some(({ isDirectory }) => isDirectory) ||
+      /\.(nii|gz|dcm)$|^[^.]+$/i.test(files[0]?.name)
+    )
+      takeLabels({ files, entries });
+    else if (files.length > 0) take(files[0]);
   });
   return words;
 }

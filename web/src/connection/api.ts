@@ -13,6 +13,8 @@ import { UploadService } from "../gen/phrenic/v1/upload_pb";
 
 /** Clients of the server's services over one transport: gRPC-web in the page, a router in tests. */
 export interface Api {
+  /** For the clients of services that only parts use which are loaded later. */
+  transport: Transport;
   access: Client<typeof AccessService>;
   scenes: Client<typeof SceneService>;
   sessions: Client<typeof SessionService>;
@@ -30,6 +32,7 @@ export interface Api {
 /** Creates the clients of all services over one transport. */
 export function createApi(transport: Transport): Api {
   return {
+    transport,
     access: createClient(AccessService, transport),
     scenes: createClient(SceneService, transport),
     sessions: createClient(SessionService, transport),

@@ -1,5 +1,6 @@
 import { type Api, errorText } from "../connection/api";
 import type { SurfaceReport } from "../gen/phrenic/v1/inspect_pb";
+import type { UploadKind } from "../gen/phrenic/v1/upload_pb";
 import { Signal } from "../state/signal";
 
 /** A file from the browser. */
@@ -44,20 +45,30 @@ export class Uploads {
   }
 
   private async send(file: LocalFile, progress: (done: number) => void): Promise<UploadProgress> {
-    const content = new Uint8Array(await file.arrayBuffer());
     const { name } = file;
-    const begin = { name, size: BigInt(content.length), sha256: await sha256(content) };
-    const begun = await this.api.uploads.beginUpload(begin);
-    const { uploadId } = begun;
-    if (uploadId === "") return { kind: "ready", file: name, path: begun.file!.path, report: undefined };
-    for (let at = Number(begun.received); at < content.length;) {
-      const chunk = content.subarray(at, at + chunkBytes);
-      at = Number((await this.api.uploads.addUploadChunk({ uploadId, offset: BigInt(at), chunk })).received);
-      progress(at / content.length);
-    }
-    const finished = await this.api.uploads.finishUpload({ uploadId });
-    return { kind: "ready", file: name, path: finished.file!.path, report: finished.report };
+    return { kind: "ready", file: name, ...(await sendFile(this.api, file, { name }, progress)) };
   }
+}
+
+/** Uploads a file under a name, in chunks; the report is that of a surface which the server did not have. */
+export async function sendFile(
+  api: Api,
+  file: LocalFile,
+  as: { name: string; kind?: UploadKind },
+  progress: (done: number) => void,
+): Promise<{ path: string; report: SurfaceReport | undefined }> {
+  const content = new Uint8Array(await file.arrayBuffer());
+  const begin = { ...as, size: BigInt(content.length), sha256: await sha256(content) };
+  const begun = await api.uploads.beginUpload(begin);
+  const { uploadId } = begun;
+  if (uploadId === "") return { path: begun.file!.path, report: undefined };
+  for (let at = Number(begun.received); at < content.length;) {
+    const chunk = content.subarray(at, at + chunkBytes);
+    at = Number((await api.uploads.addUploadChunk({ uploadId, offset: BigInt(at), chunk })).received);
+    progress(at / content.length);
+  }
+  const finished = await api.uploads.finishUpload({ uploadId });
+  return { path: finished.file!.path, report: finished.report };
 }
 
 /** Returns the digest in hexadecimal; empty if the page is not in a secure context (https or localhost). */

@@ -1,5 +1,5 @@
 import { beforeEach, describe, expect, test } from "vitest";
-import { dropZone } from "../../../../web/src/app/drop_zone";
+import { type Dropped, dropZone } from "../../../../web/src/app/drop_zone";
 import { make } from "../../../../web/src/dom/elements";
 import { decodeBody } from "../../../../web/src/geometry/bodies";
 import { ComparisonCard } from "../../../../web/src/panels/comparison/comparison_card";
@@ -107,7 +107,12 @@ describe("dropping", () => {
   test("AcceptsAFileAndShowsAHint", () => {
     const page = make("div");
     const taken: File[] = [];
-    const zone = dropZone(page, (file) => taken.push(file));
+    const labels: Dropped[] = [];
+    const zone = dropZone(
+      page,
+      (file) => taken.push(file),
+      (dropped) => labels.push(dropped),
+    );
     const file = new File([""], "b.obj");
     page.dispatchEvent(drag("dragover", { types: ["Files"], files: [] }));
     expect(zone.hidden).toBe(false);
@@ -115,11 +120,18 @@ describe("dropping", () => {
     page.dispatchEvent(drop);
     expect([zone.hidden, drop.defaultPrevented]).toEqual([true, true]);
     expect(taken).toEqual([file]);
+    for (const names of [["a.nii.gz"], ["b.dcm"], ["IM0001"], ["c.obj", "d.obj"]]) {
+      const files = names.map((name) => new File([""], name));
+      page.dispatchEvent(drag("drop", { types: ["Files"], files }));
+      expect(labels.at(-1)?.files).toEqual(files);
+    }
+    expect(taken).toEqual([file]);
   });
 
   test("IgnoresDraggedText", () => {
     const page = make("div");
-    const zone = dropZone(page, () => expect.unreachable());
+    const unwanted = () => expect.unreachable();
+    const zone = dropZone(page, unwanted, unwanted);
     const over = drag("dragover", { types: ["text/plain"], files: [] });
     page.dispatchEvent(over);
     page.dispatchEvent(drag("drop", { types: ["text/plain"], files: [] }));

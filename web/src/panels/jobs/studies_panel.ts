@@ -1,10 +1,11 @@
+import type { Api } from "../../connection/api";
 import { download } from "../../dom/download";
 import { make } from "../../dom/elements";
-import { section } from "../../dom/rows";
 import { type Study, StudyState } from "../../gen/phrenic/v1/study_pb";
 import type { SessionController } from "../../session/session_controller";
-import { isFinished, type Studies, type StudyKind } from "../../session/studies";
+import { isFinished, Studies, type StudyKind } from "../../session/studies";
 import { t } from "../../language/translate";
+import type { Clock } from "../../timing/clock";
 
 const kinds: [StudyKind, string, string][] = [
   [
@@ -17,8 +18,9 @@ const kinds: [StudyKind, string, string][] = [
   ["streaming", "Error against bandwidth", "Bandwidth and error of every codec and error bound"],
 ];
 
-/** Starts, lists, cancels and shows studies of the session's scene with its current parameters. */
-export function studiesPanel(studies: Studies, controller: SessionController): HTMLElement {
+/** Fills a section that starts, lists, cancels and shows studies of the session's scene with its current parameters. */
+export function fillStudies(panel: HTMLDetailsElement, api: Api, clock: Clock, controller: SessionController): void {
+  const studies = new Studies(api, clock);
   const kind = make("select", { id: "study-kind" });
   kind.append(...kinds.map(([value, label, title]) => make("option", { value, title: t(title) }, t(label))));
   const start = make("button", { type: "button", id: "study-start" }, t("Start"));
@@ -39,11 +41,11 @@ export function studiesPanel(studies: Studies, controller: SessionController): H
   );
   const row = make("div", { className: "study-start" }, kind, start);
   kind.ariaLabel = t("Study");
-  const panel = section(t("Studies"), false, row, hint, fault, list, view.element);
+  panel.append(row, hint, fault, list, view.element);
   panel.ontoggle = () => {
     if (panel.open) void studies.load();
   };
-  return panel;
+  void studies.load();
 }
 
 function studyRow(study: Study, studies: Studies, view: StudyView): HTMLElement {

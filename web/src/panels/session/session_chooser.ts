@@ -1,7 +1,9 @@
 import { type Api, errorText } from "../../connection/api";
+import type { Dropped } from "../../app/drop_zone";
 import { make } from "../../dom/elements";
 import { type SceneSummary, type Session, SessionState } from "../../gen/phrenic/v1/session_pb";
 import { t } from "../../language/translate";
+import type { PatientDialog } from "../../patient/patient_dialog";
 
 /** A dialog that opens a running session or starts a session of any scene in the server's catalogue. */
 export class SessionChooser {
@@ -9,6 +11,7 @@ export class SessionChooser {
   private readonly sessions = make("ul");
   private readonly scenes = make("ul");
   private readonly words = make("p", { className: "fault" });
+  private patients: PatientDialog | undefined;
 
   constructor(
     private readonly api: Api,
@@ -21,6 +24,11 @@ export class SessionChooser {
       this.sessions,
       make("h2", {}, t("Start a session of")),
       this.scenes,
+      make(
+        "button",
+        { type: "button", id: "patient-new", onclick: () => void this.importPatient() },
+        t("A patient from a segmentation"),
+      ),
       this.words,
     );
   }
@@ -41,6 +49,14 @@ export class SessionChooser {
     } catch (error) {
       this.words.textContent = errorText(error);
     }
+  }
+
+  /** Opens the dialog that makes a patient of what was dropped, or of a file that the user chooses there. */
+  async importPatient(dropped?: Dropped): Promise<void> {
+    const { PatientDialog } = await import("../../patient/patient_dialog");
+    this.element.close();
+    this.patients ??= new PatientDialog(this.api, this.open);
+    await this.patients.start(dropped);
   }
 
   private sessionRow({ id, scene, sceneTitle, state, viewers }: Session): HTMLElement {

@@ -1,0 +1,116 @@
+#include "server/session/patient/patient_job.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "server/imaging/dicom_file.h"
+#include "server/imaging/label_file.h"
+#include "server/mesh/units.h"
+#include "server/meshio/meshio.h"
+#include "server/session/patient/label_table.h"
+
+namespace phrenic::session {
+namespace {
+
+constexpr std::int64_t kFirstBytes = 256;
+constexpr double kReading = 0.05;           // share of the progress
+constexpr double kSmallestProgress = 0.01;  // smallest change of progress that is reported
+constexpr char kPatientName[] = "patient";  // of every patient's scene
+
+absl::Status CheckVerdict(const v1::Readiness& readiness, bool anyway) {
+  if (anyway || readiness.verdict() != v1::READINESS_VERDICT_NOT_USABLE) return absl::OkStatus();
+  return absl::FailedPreconditionError(
+      absl::StrCat("the volume is not usable, and no patient was made: ", readiness.findings(0).what(),
+                   ". The report lists every finding; set `anyway` to make the patient nevertheless"));
+}
+
+}  // namespace
+
+absl::StatusOr<imaging::LabelVolume> ReadLabelUpload(const Uploads::Held& labels) {
+  const absl::StatusOr<std::string> bytes = labels.Bytes();
+  if (!bytes.ok()) return bytes.status();
+  return imaging::ParseLabels(Uploads::kLabelsName, *bytes, kMostVoxels);
+}
+
+std::string LabelFormat(const Uploads::Held& labels) {
+  std::string start(static_cast<std::size_t>(std::min(kFirstBytes, labels.spool->size())), '\0');
+  const absl::Status read = labels.spool->Read(0, start.data(), start.size());
+  return read.ok() && imaging::IsDicom(start) ? "DICOM" : "NIfTI";
+}
+
+absl::StatusOr<imaging::Patient> PatientJob::Make(imaging::PatientProgress progress) const {
+  absl::StatusOr<imaging::LabelVolume> volume = ReadLabelUpload(start_.labels);
+  if (!volume.ok()) return volume.status();
+  v1::LabelMap proposed;
+  if (start_.request.labels().empty()) proposed = ProposeLabels(*volume, start_.map, volume->remarks);
+  const bool named = !start_.request.labels().empty();
+  const auto map = ApplyLabels(named ? start_.request.labels() : proposed.labels(), *volume);
+  if (!map.ok()) return map.status();
+  imaging::PatientOptions options;
+  options.name = kPatientName;
+  if (start_.request.has_vertices()) options.diaphragm.vertices = start_.request.vertices();
+  if (start_.request.has_edge_length_mm()) options.edge_length = start_.request.edge_length_mm();
+  return imaging::MakePatient(*volume, *map, start_.pattern, options, [&](double done, std::string_view doing) {
+    return progress(kReading + (1 - kReading) * done, doing);
+  });
+}
+
+absl::Status PatientJob::UploadSurfaces(const std::vector<imaging::PatientBody>& bodies) {
+  std::map<std::string, std::string> paths;  // of uploads, by that in the scene
+  for (const imaging::PatientBody& body : bodies) {
+    const std::string file = absl::StrCat(body.name, ".msh");
+    const absl::StatusOr<std::string> bytes = meshio::Write(file, body.mesh, kMillimetre);
+    if (!bytes.ok()) return bytes.status();
+    absl::StatusOr<Uploads::Held> held = uploads_.Adopt(start_.by, file, *bytes);
+    if (!held.ok()) return held.status();
+    paths.emplace(absl::StrCat(kPatientName, "/", file), held->file.path());
+    surfaces_.push_back(*std::move(held));
+  }
+  for (v1::Body& body : *scene_.mutable_bodies()) {
+    if (const auto path = paths.find(body.file().path()); path != paths.end()) {
+      body.mutable_file()->set_path(path->second);
+    }
+  }
+  for (const Uploads::Held& surface : surfaces_) {
+    if (uploads_.Hold(start_.by, surface.file.path()).ok()) continue;
+    return absl::ResourceExhaustedError(
+        "your uploaded files leave no room for the patient's surfaces; delete uploads that you do not need");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status PatientJob::Run(jobs::Progress<v1::Patient> progress) {
+  const auto tell = [&](double done, std::string_view doing) {
+    return progress(done, [&](v1::Patient& message) {
+      const bool changed = done >= message.progress() + kSmallestProgress || message.doing() != doing;
+      message.set_doing(std::string(doing));
+      return changed;
+    });
+  };
+  if (!tell(0, "reading")) return absl::CancelledError("making the patient was cancelled");
+  absl::StatusOr<imaging::Patient> patient = Make(tell);
+  if (!patient.ok()) return patient.status();
+  report_ = std::move(patient->report);
+  absl::Status verdict = CheckVerdict(report_.readiness(), start_.request.anyway());
+  if (!verdict.ok()) return verdict;
+  scene_ = std::move(patient->scene);
+  return UploadSurfaces(patient->bodies);
+}
+
+void PatientJob::Finish(const absl::Status& status, absl::Time /*expires*/, v1::Patient& message) {
+  message.set_doing("");
+  if (report_.has_readiness()) *message.mutable_report() = std::move(report_);
+  if (status.ok()) {
+    *message.mutable_scene() = std::move(scene_);
+  } else {
+    surfaces_.clear();
+  }
+  start_.labels = {};
+}
+
+}  // namespace phrenic::session
