@@ -58,6 +58,7 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSessi
                       last.largest_stable_step()};
   Session::Origin origin{ControlBook(ControlOf(saved)), *std::move(journal), replayed->moment, epoch,
                          std::move(compiled->surfaces)};
+  origin.held = !taken;
   return std::make_shared<Session>(saved.id, compiled->model, std::move(start), clock_, limits_, std::move(origin));
 }
 
@@ -68,21 +69,38 @@ absl::StatusOr<std::map<std::string, absl::Status>> Table::Restore(
   if (!sessions.ok()) return sessions.status();
   for (store::SavedSession& saved : *sessions) {
     progress(saved.id);
-    const absl::StatusOr<std::int64_t> epoch = Reclaim(saved);
-    if (absl::IsUnavailable(epoch.status())) return epoch.status();
-    if (absl::IsFailedPrecondition(epoch.status())) continue;
-    absl::StatusOr<std::shared_ptr<Session>> session = epoch.ok() ? Restored(saved, *epoch, false) : epoch.status();
-    if (epoch.ok() && !session.ok() && ownership_ != nullptr) ownership_->Abandon(saved.id);
-    absl::MutexLock lock(&mutex_);
-    if (session.ok()) {
-      sessions_[saved.id] = *std::move(session);
-      continue;
-    }
-    lost[saved.id] = saved.problem = session.status();
-    std::string id = saved.id;
-    lost_.emplace(std::move(id), std::move(saved));
+    if (absl::Status status = RestoreOne(std::move(saved), lost); !status.ok()) return status;
   }
+  ReleaseAll();
   return lost;
+}
+
+absl::Status Table::RestoreOne(store::SavedSession saved, std::map<std::string, absl::Status>& lost) {
+  const absl::StatusOr<std::int64_t> epoch = Reclaim(saved);
+  if (absl::IsUnavailable(epoch.status())) return epoch.status();
+  if (absl::IsFailedPrecondition(epoch.status())) return absl::OkStatus();
+  absl::StatusOr<std::shared_ptr<Session>> session = epoch.ok() ? Restored(saved, *epoch, false) : epoch.status();
+  if (epoch.ok() && !session.ok() && ownership_ != nullptr) ownership_->Abandon(saved.id);
+  absl::MutexLock lock(&mutex_);
+  if (session.ok()) {
+    sessions_[saved.id] = *std::move(session);
+    return absl::OkStatus();
+  }
+  lost[saved.id] = saved.problem = session.status();
+  std::string id = saved.id;
+  lost_.emplace(std::move(id), std::move(saved));
+  return absl::OkStatus();
+}
+
+void Table::ReleaseAll() const {
+  std::vector<std::shared_ptr<Session>> held;
+  {
+    absl::MutexLock lock(&mutex_);
+    for (const auto& [id, session] : sessions_) {
+      if (session != nullptr) held.push_back(session);
+    }
+  }
+  for (const auto& session : held) session->Release();
 }
 
 std::map<std::string, std::string> Table::carried_over() const {
