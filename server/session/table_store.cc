@@ -1,12 +1,24 @@
 // The table's sessions in the store.
+#include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/parallel/compile_threads.h"
 #include "server/session/carry_over.h"
 #include "server/session/saving.h"
 #include "server/session/table.h"
 
 namespace phrenic::session {
+
+// What the threads that restore sessions share.
+struct Table::Restoring {
+  std::vector<store::SavedSession> sessions;  // by the thread that took one with the mutex held
+  absl::FunctionRef<void(const std::string& id)> progress;
+  absl::Mutex mutex = {};
+  std::size_t next = 0;                           // of the sessions
+  std::map<std::string, absl::Status> lost = {};  // by id
+  absl::Status problem = {};                      // no further session is restored
+};
 
 absl::StatusOr<SessionOrigin> Table::Begin(const Claim& claim, const Model& model, std::vector<Uploads::Held> surfaces,
                                            ControlBook control) const {
@@ -64,18 +76,38 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSessi
 
 absl::StatusOr<std::map<std::string, absl::Status>> Table::Restore(
     absl::FunctionRef<void(const std::string& id)> progress) {
-  std::map<std::string, absl::Status> lost;
   auto sessions = store_->Load();
   if (!sessions.ok()) return sessions.status();
-  for (store::SavedSession& saved : *sessions) {
-    progress(saved.id);
-    if (absl::Status status = RestoreOne(std::move(saved), lost); !status.ok()) return status;
-  }
+  Restoring restoring{*std::move(sessions), progress};
+  std::vector<std::thread> others;
+  for (int i = 1; i < CompileThreads(); ++i) others.emplace_back([&] { RestoreNext(restoring); });
+  RestoreNext(restoring);
+  for (std::thread& other : others) other.join();
+  absl::MutexLock lock(&restoring.mutex);
+  if (!restoring.problem.ok()) return restoring.problem;
   ReleaseAll();
-  return lost;
+  return restoring.lost;
 }
 
-absl::Status Table::RestoreOne(store::SavedSession saved, std::map<std::string, absl::Status>& lost) {
+void Table::RestoreNext(Restoring& restoring) {
+  for (;;) {
+    store::SavedSession saved;
+    {
+      absl::MutexLock lock(&restoring.mutex);
+      if (!restoring.problem.ok() || restoring.next == restoring.sessions.size()) return;
+      saved = std::move(restoring.sessions[restoring.next++]);
+      restoring.progress(saved.id);
+    }
+    const std::string id = saved.id;
+    absl::Status lost;
+    const absl::Status restored = RestoreOne(std::move(saved), lost);
+    absl::MutexLock lock(&restoring.mutex);
+    if (!restored.ok()) restoring.problem = restored;
+    if (!lost.ok()) restoring.lost[id] = lost;
+  }
+}
+
+absl::Status Table::RestoreOne(store::SavedSession saved, absl::Status& lost) {
   const absl::StatusOr<std::int64_t> epoch = Reclaim(saved);
   if (absl::IsUnavailable(epoch.status())) return epoch.status();
   if (absl::IsFailedPrecondition(epoch.status())) return absl::OkStatus();
@@ -86,7 +118,7 @@ absl::Status Table::RestoreOne(store::SavedSession saved, std::map<std::string, 
     sessions_[saved.id] = *std::move(session);
     return absl::OkStatus();
   }
-  lost[saved.id] = saved.problem = session.status();
+  lost = saved.problem = session.status();
   std::string id = saved.id;
   lost_.emplace(std::move(id), std::move(saved));
   return absl::OkStatus();
