@@ -13,7 +13,9 @@
 #include "server/service/calls/messages.h"
 #include "server/service/calls/session_call.h"
 #include "server/service/calls/status.h"
-#include "server/service/watch_reactor.h"
+#include "server/service/net/metadata_keys.h"
+#include "server/service/watch/claimed_watch.h"
+#include "server/service/watch/watch_reactor.h"
 #include "server/session/present_forces.h"
 #include "server/stream/geometry.h"
 
@@ -79,12 +81,20 @@ absl::Status Acknowledge(const session::Table& table, const v1::AckFramesRequest
   return absl::OkStatus();
 }
 
+// Returns the key of the claim that a call carries; empty if it has none.
+std::string ClaimOf(const grpc::ServerContextBase& context) {
+  const auto key = context.client_metadata().find(kWatchClaimKey);
+  return key == context.client_metadata().end() ? "" : std::string(key->second.data(), key->second.size());
+}
+
 }  // namespace
 
-FrameService::FrameService(session::Table& table, AccessGuard& guard, Metrics& metrics, const session::Limits& limits)
+FrameService::FrameService(session::Table& table, AccessGuard& guard, Metrics& metrics, const session::Limits& limits,
+                           WatchClaims& watches)
     : table_(table),
       guard_(guard),
       metrics_(metrics),
+      watches_(watches),
       viewers_({"viewers", "--max-viewers-in-all, --max-share", limits.viewers_in_all,
                 PartOf(limits.viewers_in_all, limits.share)}),
       seats_({"viewers of this session", "--max-viewers, --max-share", std::numeric_limits<int>::max(),
@@ -141,9 +151,14 @@ absl::Status FrameService::WatchFrames(ServedCall& call) {
   auto seats = TakeSeats(*caller, request.session_id());
   if (!seats.ok()) return seats.status();
   auto may_see = guard_.StillMaySee(*caller, **session);
-  return std::make_shared<WatchReactor>(call)->Watch(
-      *std::move(session), *options,
-      {*std::move(seats), std::move(may_see), [this](std::size_t sent) { metrics_.CountFrame(sent); }});
+  WatchStream::Subscription subscription{*std::move(seats), std::move(may_see),
+                                         [this](std::size_t sent) { metrics_.CountFrame(sent); }};
+  const std::string key = ClaimOf(call.context());
+  if (!watches_.Has(key)) {
+    return std::make_shared<WatchReactor>(call)->Start(*std::move(session), *options, std::move(subscription));
+  }
+  return std::make_shared<ClaimedWatch>(call)->Start(*std::move(session), *options, std::move(subscription), key,
+                                                     watches_);
 }
 
 grpc::Status FrameService::AckFrames(grpc::CallbackServerContext* context, const v1::AckFramesRequest* request,

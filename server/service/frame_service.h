@@ -10,19 +10,21 @@
 #include "server/service/calls/fair_share.h"
 #include "server/service/calls/metrics.h"
 #include "server/service/calls/turn.h"
+#include "server/service/watch/watch_claims.h"
 #include "server/session/limits.h"
 #include "server/session/table.h"
 
 namespace phrenic::service {
 
-// Thread-safe: the methods run on threads of their lanes. WatchFrames keeps no thread (WatchReactor).
+// Thread-safe: the methods run on threads of their lanes. WatchFrames keeps no thread (WatchStream).
 //
 // Each session's Publisher encodes frames on its own thread; the service adds viewers to it. Errors as in the proto of
 // each method.
 class FrameService final {
  public:
-  // Table, guard and metrics outlive the service.
-  FrameService(session::Table& table, AccessGuard& guard, Metrics& metrics, const session::Limits& limits);
+  // The references outlive the service. `watches`: who takes a stream's messages itself.
+  FrameService(session::Table& table, AccessGuard& guard, Metrics& metrics, const session::Limits& limits,
+               WatchClaims& watches);
 
   // Adds the methods to the table. The service outlives it.
   void AddTo(CallTable& calls);
@@ -43,9 +45,9 @@ class FrameService final {
 
  private:
   // Starts the stream, which then goes on without a thread. Returns an error if it cannot start. On Lane::kQuick until
-  // the stream has started; a WatchReactor then serves the viewer. RESOURCE_EXHAUSTED above the limits of viewers,
-  // ALREADY_EXISTS for a watch_id that another viewer of the session has, INVALID_ARGUMENT for an unknown body, or for
-  // max_unacked_frames without a watch_id.
+  // the stream has started; a WatchReactor then serves the viewer, or the gateway by a ClaimedWatch. RESOURCE_EXHAUSTED
+  // above the limits of viewers, ALREADY_EXISTS for a watch_id that another viewer of the session has, INVALID_ARGUMENT
+  // for an unknown body, or for max_unacked_frames without a watch_id.
   absl::Status WatchFrames(ServedCall& call);
   // Takes a seat in all and one of the session for the viewer. The result holds both until it is destroyed.
   // RESOURCE_EXHAUSTED names the limit and its flag.
@@ -59,6 +61,7 @@ class FrameService final {
   session::Table& table_;
   AccessGuard& guard_;
   Metrics& metrics_;
+  WatchClaims& watches_;
   FairShare viewers_;                    // of all sessions
   FairShare seats_;                      // of one caller in one session; the publisher limits all of a session
   FairShare large_reads_{LargeReads()};  // of GetGeometry and GetForces

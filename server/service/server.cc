@@ -133,7 +133,7 @@ struct Server::Parts {
         session_service(table, guard, page_tokens),
         control_service(table, guard),
         access_service(guard, table),
-        frame_service(table, guard, metrics, options.limits),
+        frame_service(table, guard, metrics, options.limits, watches),
         sample_service(table, guard, options.limits),
         reference_service(table, guard),
         tissue_service(table, guard, options.limits),
@@ -193,6 +193,7 @@ struct Server::Parts {
   SessionService session_service;
   ControlService control_service;
   AccessService access_service;
+  WatchClaims watches;
   FrameService frame_service;
   SampleService sample_service;
   ReferenceService reference_service;
@@ -385,7 +386,7 @@ absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
   if (lti != nullptr) lti->AddTo(web_options.settings);
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
-  auto gateway = WebGateway::Start(web_options, entry_server().InProcessChannel(arguments));
+  auto gateway = WebGateway::Start(web_options, entry_server().InProcessChannel(arguments), watches);
   if (!gateway.ok()) return gateway.status();
   web = *std::move(gateway);
   server_service.set_web_port(web->port());

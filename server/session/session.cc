@@ -29,9 +29,9 @@ v1::Session FirstStatus(const std::string& id, const Model& model, const Session
   return status;
 }
 
-RunningSession StartOf(const std::shared_ptr<const Model>& model, Fork start, SessionOrigin origin) {
+RunningSession StartOf(const std::shared_ptr<const Model>& model, Fork start, const SessionOrigin& origin) {
   RunningSession session{.run = Run(model, std::move(start.parameters), std::move(start.state)),
-                         .control = std::move(origin.control),
+                         .control = origin.control,
                          .stable_step = start.stable_step};
   if (origin.saved_moment.has_value()) session.Restore(*origin.saved_moment);
   return session;
@@ -59,7 +59,7 @@ Session::Session(std::string id, std::shared_ptr<const Model> model, Fork start,
       board_(FirstStatus(id_, *model_, origin, clock.Now())),
       saver_(std::move(origin.journal), clock, origin.epoch > 0),
       reporter_(clock, board_, saver_, publisher_, sampler_),
-      loop_(StartOf(model_, std::move(start), std::move(origin)), limits.session_cpu, clock, reporter_) {}
+      loop_(StartOf(model_, std::move(start), origin), limits.session_cpu, clock, reporter_, origin.held) {}
 
 Session::~Session() { Stop(absl::UnavailableError(absl::StrCat("session ", id_, " has ended"))); }
 
@@ -140,6 +140,10 @@ absl::StatusOr<v1::Session> Session::Pull(const PullList& pulls, bool release_ot
   const auto changes = FindPulls(*model_, pulls, "pulls");
   if (!changes.ok()) return changes.status();
   return Change(token, [&] { return loop_.ChangePulls(*changes, release_others); });
+}
+
+void Session::Release() {
+  (void)loop_.Call([this] { loop_.Release(); });
 }
 
 void Session::Rest() {

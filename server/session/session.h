@@ -41,6 +41,7 @@ struct SessionOrigin {
   std::int64_t epoch = 0;                                      // in a cluster
   std::vector<Uploads::Held> surfaces = {};                    // uploaded files that the scene uses
   bool temporary = false;                                      // v1::Session.temporary
+  bool held = false;                                           // until Session::Release
 };
 
 // Thread-safe. The stepping thread (SteppingLoop) makes every change between two steps, so that it takes effect at once
@@ -97,6 +98,8 @@ class Session {
                                    std::string_view token = {}, std::weak_ptr<const ReachedTime> leader = {});
   // The same, also with `keep_playing`: the session plays on without viewers.
   absl::StatusOr<v1::Session> Play(const PlayRequest& request, std::string_view token);
+  // Lets a session that was restored as held play. Table::Restore calls it. Does nothing if the session has ended.
+  void Release();
   // The time that followers of this session read. [s]; infinity unless the session plays. It may outlive the session.
   std::shared_ptr<const ReachedTime> reached() const { return loop_.reached(); }
   // Pauses a playing session, and ends a Step in progress with ABORTED.

@@ -87,7 +87,9 @@ void SessionReporter::ReportProgress(const RunningSession& session, bool measure
 }
 
 void SessionReporter::ReportEnd(const RunningSession& session) {
-  if (saver_.saves()) Report(session);
+  if (!saver_.saves()) return;
+  saver_.NoteEnd();
+  Report(session);
 }
 
 void SessionReporter::OfferFrame(const RunningSession& session, absl::Time now) {

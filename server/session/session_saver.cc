@@ -54,7 +54,7 @@ void SessionSaver::SaveChange(v1::SavedMoment moment, const State& state) {
   const bool time_alone = revision == saved_revision_ && control == saved_control_ && !from_start;
   saved_revision_ = revision;
   saved_control_ = control;
-  const bool state_due = saved_tick_ < 0 || (state.tick != saved_tick_ && StateIsStale(clock_.Now()));
+  const bool state_due = saved_tick_ < 0 || (state.tick != saved_tick_ && (ends_ || StateIsStale(clock_.Now())));
   if (state_due || journal_->wants_state()) {
     SaveState(std::move(moment), state);
   } else {

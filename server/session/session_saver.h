@@ -40,9 +40,11 @@ class SessionSaver {
 
   // The next change begins at t = 0.
   void NoteReset() { from_start_ = true; }
+  // The next change is the session's last: it is saved with a state, so that a restart steps nothing again.
+  void NoteEnd() { ends_ = true; }
   // Saves `moment` with the session's status, and `state`, at which it holds, if a state is due. Requires: saves(). A
-  // state is due if none was saved yet, if the last one is too old and of another tick, or if too many moments wait
-  // (Journal::wants_state). Marks the moment as from the start after NoteReset.
+  // state is due if none was saved yet, if the last one is of another tick and too old or the session ends, or if too
+  // many moments wait (Journal::wants_state). Marks the moment as from the start after NoteReset.
   void SaveChange(v1::SavedMoment moment, const State& state);
   // True if the progress of a playing session is to be saved at `now`. False without a journal.
   bool ProgressDue(absl::Time now) const;
@@ -63,6 +65,7 @@ class SessionSaver {
   std::int64_t saved_tick_ = -1;                                                           // of the last saved state
   std::int64_t saved_revision_ = 0, saved_control_ = 0;                                    // of the last saved change
   bool from_start_ = false;  // reset since the last saved change
+  bool ends_ = false;        // NoteEnd was called
 };
 
 }  // namespace phrenic::session

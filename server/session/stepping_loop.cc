@@ -17,8 +17,14 @@ constexpr absl::Duration kLookAgain = absl::Milliseconds(1);
 
 }  // namespace
 
-SteppingLoop::SteppingLoop(RunningSession session, double cpu_share, const Clock& clock, SessionReporter& reporter)
-    : clock_(clock), reporter_(reporter), commands_(clock), session_(std::move(session)), cpu_share_(cpu_share) {
+SteppingLoop::SteppingLoop(RunningSession session, double cpu_share, const Clock& clock, SessionReporter& reporter,
+                           bool held)
+    : clock_(clock),
+      reporter_(reporter),
+      commands_(clock),
+      session_(std::move(session)),
+      cpu_share_(cpu_share),
+      held_(held) {
   const State& state = session_.run.state();
   if (session_.phase == v1::SESSION_STATE_PLAYING) *reached_ = state.time;
   pacer_.Start(clock.Now(), state.time, session_.playback.speed());
@@ -63,15 +69,14 @@ bool SteppingLoop::ServeCommands() {
 }
 
 absl::Time SteppingLoop::NextBurst() const {
-  const bool playing = session_.phase == v1::SESSION_STATE_PLAYING;
-  if (job_ == nullptr && !playing) return absl::InfiniteFuture();
+  if (job_ == nullptr && !Plays()) return absl::InfiniteFuture();
   if (job_ == nullptr && WaitsInStep()) return clock_.Now() + kLookAgain;
   const bool at_once = job_ != nullptr || session_.playback.as_fast_as_possible();
   return std::max(cpu_share_.RestsUntil(clock_.Now()), at_once ? absl::InfinitePast() : pacer_.next_frame());
 }
 
 bool SteppingLoop::MayStep() const {
-  if (job_ == nullptr && (session_.phase != v1::SESSION_STATE_PLAYING || WaitsInStep())) return false;
+  if (job_ == nullptr && (!Plays() || WaitsInStep())) return false;
   return cpu_share_.RestsUntil(clock_.Now()) <= clock_.Now();
 }
 
@@ -154,6 +159,13 @@ absl::Status SteppingLoop::Play(const PlayRequest& request) {
 void SteppingLoop::Pause(const std::string& reason) {
   EndJob(absl::AbortedError(reason));
   if (session_.phase == v1::SESSION_STATE_PLAYING) Halt(v1::SESSION_STATE_PAUSED);
+}
+
+void SteppingLoop::Release() {
+  if (!std::exchange(held_, false)) return;
+  const State& state = session_.run.state();
+  pacer_.Start(clock_.Now(), state.time, session_.playback.speed());
+  session_.meter.Start(clock_.Now(), state.tick, state.time);
 }
 
 void SteppingLoop::Reset() {

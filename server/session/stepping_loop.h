@@ -58,9 +58,10 @@ struct StepJob {
 // (1/kFramesPerSecond), or after the step in progress as soon as a command waits.
 class SteppingLoop {
  public:
-  // Starts the thread at `session`, which gets `cpu_share` of a core; 1 is no limit. `clock` and `reporter` outlive the
-  // loop.
-  SteppingLoop(RunningSession session, double cpu_share, const Clock& clock, SessionReporter& reporter);
+  // Starts the thread at `session`, which gets `cpu_share` of a core; 1 is no limit. A session that is `held` takes no
+  // step of a playback until Release. `clock` and `reporter` outlive the loop.
+  SteppingLoop(RunningSession session, double cpu_share, const Clock& clock, SessionReporter& reporter,
+               bool held = false);
   // Waits for the thread to end. Requires: Stop was called. Commands that wait when the loop is stopped do not run.
   ~SteppingLoop();
   SteppingLoop(const SteppingLoop&) = delete;
@@ -86,6 +87,8 @@ class SteppingLoop {
   absl::Status Play(const PlayRequest& request);
   // Pauses a playing session, and ends a StepJob in progress with ABORTED and `reason`.
   void Pause(const std::string& reason);
+  // Lets a held session play, from now on the wall clock. Does nothing if it is not held.
+  void Release();
   // Returns to t = 0, paused. Discards waiting updates and keeps parameters and pulls.
   void Reset();
   // The errors of Session::Step. Steps `job->left` times. The loop notifies job->done at the end, also if it diverges
@@ -115,6 +118,8 @@ class SteppingLoop {
   // Returns when to step next: never while paused; at once for a job or as fast as possible, but not before the CPU
   // share allows it; otherwise when the next frame is due, or 1 ms later while it waits for its leader.
   absl::Time NextBurst() const;
+  // True if the session plays and is not held.
+  bool Plays() const { return session_.phase == v1::SESSION_STATE_PLAYING && !held_; }
   // True if there is something to step, the CPU share allows it, and the leader is not behind.
   bool MayStep() const;
   // True if the next step would pass the time up to which the session may run ahead of its leader.
@@ -152,6 +157,7 @@ class SteppingLoop {
   std::shared_ptr<StepJob> job_;  // null: none is in progress
   Pacer pacer_;
   CpuShare cpu_share_;
+  bool held_;  // until Release
 
   absl::Notification ended_;
   std::thread thread_;

@@ -48,10 +48,12 @@ class Table {
   // Sets the names for Restore and TakeOver; null: they are unchanged. Call it before them.
   void set_account_names(AccountNames names) { account_names_ = std::move(names); }
 
-  // Restores the sessions of an earlier server from the store; those that played continue to play. Returns the sessions
+  // Restores the sessions of an earlier server from the store; those that played continue to play, once all are
+  // restored, so that they do not take the processor from those that wait. Returns the sessions
   // that could not be restored, with the reason; they stay in the store under their id until they are deleted, and the
   // next server tries again. A session whose scene compiles to another model in this build is carried over (CarryOver).
-  // Calls `progress` before each session. Returns the errors of store::Store::Load; UNAVAILABLE if the cluster cannot
+  // Restores as many at a time as there are processor cores, and calls `progress` before each, one call at a time.
+  // Returns the errors of store::Store::Load; UNAVAILABLE if the cluster cannot
   // say who owns a session. Requires: there is a store, and no session was created yet.
   absl::StatusOr<std::map<std::string, absl::Status>> Restore(absl::FunctionRef<void(const std::string& id)> progress)
       ABSL_LOCKS_EXCLUDED(mutex_);
@@ -133,8 +135,15 @@ class Table {
   // Begins the journal of a new session, if there is a store. Returns the errors of SaveScene.
   absl::StatusOr<SessionOrigin> Begin(const Claim& claim, const Model& model, std::vector<Uploads::Held> surfaces,
                                       ControlBook control) const;
-  // `taken`: another server had the session, and this server's store gets all of it. Compiles the scene, then replays
-  // the journal, or carries the state over if the model differs.
+  struct Restoring;
+  // Restores one session after the other until none is left. Several threads call it.
+  void RestoreNext(Restoring& restoring) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Restores the session, or keeps it in lost_ and sets `lost` to the reason. Errors: those of Restore.
+  absl::Status RestoreOne(store::SavedSession saved, absl::Status& lost) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Lets all sessions play (Session::Release).
+  void ReleaseAll() const ABSL_LOCKS_EXCLUDED(mutex_);
+  // `taken`: another server had the session, and this server's store gets all of it. Otherwise the session is held
+  // until ReleaseAll. Compiles the scene, then replays the journal, or carries the state over if the model differs.
   absl::StatusOr<std::shared_ptr<Session>> Restored(const store::SavedSession& saved, std::int64_t epoch, bool taken);
   // Returns the journal to continue; a new one if the session was carried over or taken.
   absl::StatusOr<std::shared_ptr<store::Journal>> JournalOf(const store::SavedSession& saved, const Compiled& compiled,

@@ -1,12 +1,24 @@
 // The table's sessions in the store.
+#include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/mechanics/parallel/compile_threads.h"
 #include "server/session/carry_over.h"
 #include "server/session/saving.h"
 #include "server/session/table.h"
 
 namespace phrenic::session {
+
+// What the threads that restore sessions share.
+struct Table::Restoring {
+  std::vector<store::SavedSession> sessions;  // by the thread that took one with the mutex held
+  absl::FunctionRef<void(const std::string& id)> progress;
+  absl::Mutex mutex = {};
+  std::size_t next = 0;                           // of the sessions
+  std::map<std::string, absl::Status> lost = {};  // by id
+  absl::Status problem = {};                      // no further session is restored
+};
 
 absl::StatusOr<SessionOrigin> Table::Begin(const Claim& claim, const Model& model, std::vector<Uploads::Held> surfaces,
                                            ControlBook control) const {
@@ -58,31 +70,69 @@ absl::StatusOr<std::shared_ptr<Session>> Table::Restored(const store::SavedSessi
                       last.largest_stable_step()};
   Session::Origin origin{ControlBook(ControlOf(saved)), *std::move(journal), replayed->moment, epoch,
                          std::move(compiled->surfaces)};
+  origin.held = !taken;
   return std::make_shared<Session>(saved.id, compiled->model, std::move(start), clock_, limits_, std::move(origin));
 }
 
 absl::StatusOr<std::map<std::string, absl::Status>> Table::Restore(
     absl::FunctionRef<void(const std::string& id)> progress) {
-  std::map<std::string, absl::Status> lost;
   auto sessions = store_->Load();
   if (!sessions.ok()) return sessions.status();
-  for (store::SavedSession& saved : *sessions) {
-    progress(saved.id);
-    const absl::StatusOr<std::int64_t> epoch = Reclaim(saved);
-    if (absl::IsUnavailable(epoch.status())) return epoch.status();
-    if (absl::IsFailedPrecondition(epoch.status())) continue;
-    absl::StatusOr<std::shared_ptr<Session>> session = epoch.ok() ? Restored(saved, *epoch, false) : epoch.status();
-    if (epoch.ok() && !session.ok() && ownership_ != nullptr) ownership_->Abandon(saved.id);
-    absl::MutexLock lock(&mutex_);
-    if (session.ok()) {
-      sessions_[saved.id] = *std::move(session);
-      continue;
+  Restoring restoring{*std::move(sessions), progress};
+  std::vector<std::thread> others;
+  for (int i = 1; i < CompileThreads(); ++i) others.emplace_back([&] { RestoreNext(restoring); });
+  RestoreNext(restoring);
+  for (std::thread& other : others) other.join();
+  absl::MutexLock lock(&restoring.mutex);
+  if (!restoring.problem.ok()) return restoring.problem;
+  ReleaseAll();
+  return restoring.lost;
+}
+
+void Table::RestoreNext(Restoring& restoring) {
+  for (;;) {
+    store::SavedSession saved;
+    {
+      absl::MutexLock lock(&restoring.mutex);
+      if (!restoring.problem.ok() || restoring.next == restoring.sessions.size()) return;
+      saved = std::move(restoring.sessions[restoring.next++]);
+      restoring.progress(saved.id);
     }
-    lost[saved.id] = saved.problem = session.status();
-    std::string id = saved.id;
-    lost_.emplace(std::move(id), std::move(saved));
+    const std::string id = saved.id;
+    absl::Status lost;
+    const absl::Status restored = RestoreOne(std::move(saved), lost);
+    absl::MutexLock lock(&restoring.mutex);
+    if (!restored.ok()) restoring.problem = restored;
+    if (!lost.ok()) restoring.lost[id] = lost;
   }
-  return lost;
+}
+
+absl::Status Table::RestoreOne(store::SavedSession saved, absl::Status& lost) {
+  const absl::StatusOr<std::int64_t> epoch = Reclaim(saved);
+  if (absl::IsUnavailable(epoch.status())) return epoch.status();
+  if (absl::IsFailedPrecondition(epoch.status())) return absl::OkStatus();
+  absl::StatusOr<std::shared_ptr<Session>> session = epoch.ok() ? Restored(saved, *epoch, false) : epoch.status();
+  if (epoch.ok() && !session.ok() && ownership_ != nullptr) ownership_->Abandon(saved.id);
+  absl::MutexLock lock(&mutex_);
+  if (session.ok()) {
+    sessions_[saved.id] = *std::move(session);
+    return absl::OkStatus();
+  }
+  lost = saved.problem = session.status();
+  std::string id = saved.id;
+  lost_.emplace(std::move(id), std::move(saved));
+  return absl::OkStatus();
+}
+
+void Table::ReleaseAll() const {
+  std::vector<std::shared_ptr<Session>> held;
+  {
+    absl::MutexLock lock(&mutex_);
+    for (const auto& [id, session] : sessions_) {
+      if (session != nullptr) held.push_back(session);
+    }
+  }
+  for (const auto& session : held) session->Release();
 }
 
 std::map<std::string, std::string> Table::carried_over() const {

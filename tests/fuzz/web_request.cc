@@ -48,6 +48,7 @@ struct Gateway {
   WebSettings settings;
   AllowedHosts hosts{{}, {}, "127.0.0.1:80"};
   BodyBudget bodies{kMaxBytes, kMaxBytes};
+  WatchClaims watches;
 };
 
 void Serve(Gateway& gateway, const std::string& bytes) {
@@ -58,7 +59,7 @@ void Serve(Gateway& gateway, const std::string& bytes) {
   boost::asio::io_context context;
   boost::asio::ip::tcp::socket socket(boost::asio::make_strand(context));
   socket.assign(boost::asio::ip::tcp::v4(), ends[0]);
-  const WebShared shared{gateway.settings, gateway.hosts, *gateway.stub, gateway.bodies};
+  const WebShared shared{gateway.settings, gateway.hosts, *gateway.stub, gateway.bodies, gateway.watches};
   std::make_shared<WebConnection>(std::move(socket), nullptr, shared)->Run();
   context.run();
   close(ends[1]);

@@ -9,6 +9,7 @@
 
 #include "server/session/saving.h"
 #include "server/session/table.h"
+#include "server/store/saved_state.h"
 #include "tests/fake_clock.h"
 #include "tests/small_scenes.h"
 
@@ -35,13 +36,17 @@ class RestoreTest : public testing::Test {
   }
 
   void WriteScene(const std::string& text) const { std::ofstream(folder_ + "/scenes/triangle.textproto") << text; }
-  void Begin() {
+  // Starts the server, without its sessions.
+  void Open() {
     auto store = store::Store::Open(folder_ + "/store");
     ASSERT_TRUE(store.ok()) << store.status();
     store_ = *std::move(store);
     uploads_ = std::make_unique<Uploads>(Limits(), testing::TempDir());
     models_ = std::make_unique<Models>(SceneCatalogue({folder_ + "/scenes"}), "", 4, uploads_.get());
     table_ = std::make_unique<Table>(*models_, clock_, Limits(), store_.get());
+  }
+  void Begin() {
+    Open();
     auto lost = table_->Restore([](const std::string&) {});
     ASSERT_TRUE(lost.ok()) << lost.status();
     lost_ = *std::move(lost);
@@ -183,6 +188,63 @@ TEST_F(RestoreTest, APlayingSessionContinuesToPlay) {
   EXPECT_EQ(Find("a")->status().speed(), 0.5);
   clock_.Advance(absl::Seconds(0.034));
   EXPECT_TRUE(Eventually([&] { return Find("a")->status().tick() > 0; }));
+}
+
+// Sessions that play as fast as they can would take the processor from those that are not restored yet.
+TEST_F(RestoreTest, SessionsPlayOnFromTheirStatesOnceAllAreRestored) {
+  constexpr absl::Duration kStepTime = absl::Milliseconds(10);  // of many steps of a session that plays
+  std::map<std::string, std::int64_t> ticks;
+  for (const char* id : {"a", "b", "c", "d"}) {
+    ASSERT_TRUE(Create(id)->Play(std::nullopt, true, 0).ok());
+    ASSERT_TRUE(Eventually([&] { return Find(id)->status().tick() > 50; }));
+    ticks[id] = 0;
+  }
+  std::map<std::string, std::shared_ptr<Session>> before;
+  for (auto& [id, tick] : ticks) before[id] = Find(id);
+  table_.reset();
+  for (auto& [id, tick] : ticks) tick = before[id]->status().tick();
+  Session whole("whole", before["a"]->shared_model(),
+                {before["a"]->model().parameters, before["a"]->model().InitialState(), 0.01}, clock_, Limits{});
+  before.clear();
+  store_.reset();
+  Open();
+  std::size_t restored = 0;
+  const auto look = [&](const std::string&) {
+    absl::SleepFor(kStepTime);
+    const auto present = table_->List(0, "").sessions;
+    EXPECT_LE(present.size(), restored++);
+    for (const auto& session : present) EXPECT_EQ(session->status().tick(), ticks[session->id()]) << session->id();
+  };
+  ASSERT_TRUE(table_->Restore(look).ok());
+  EXPECT_EQ(restored, ticks.size());
+  for (const auto& [id, tick] : ticks) {
+    EXPECT_TRUE(Eventually([&, id = id, tick = tick] { return Find(id)->status().tick() > tick; })) << id;
+  }
+  // From first to last tick, so that the whole run is stepped once.
+  std::map<std::int64_t, std::string> hashes;
+  for (const auto& [id, tick] : ticks) {
+    const auto stepped = Find(id)->Step(1, std::nullopt, Nobody);
+    ASSERT_TRUE(stepped.ok()) << stepped.status();
+    hashes[stepped->session.tick()] = stepped->state_hash;
+  }
+  for (const auto& [tick, hash] : hashes) EXPECT_EQ(HashAfter(whole, tick - whole.status().tick()), hash) << tick;
+}
+
+// Without time between two saved states, as the clock stands still.
+TEST_F(RestoreTest, ASessionThatEndsIsSavedWithItsStateSoThatNothingIsSteppedAgain) {
+  const auto session = Create("a");
+  const std::string hash = HashAfter(*session, 30);
+  Set(*session, 1.5);
+  table_.reset();
+  store_.reset();
+  const auto store = store::Store::Open(folder_ + "/store");
+  ASSERT_TRUE(store.ok()) << store.status();
+  const auto saved = (*store)->Load();
+  ASSERT_TRUE(saved.ok() && saved->size() == 1);
+  EXPECT_TRUE(saved->front().later.empty());
+  const auto state = store::Restore(session->model(), saved->front().state);
+  ASSERT_TRUE(state.ok()) << state.status();
+  EXPECT_EQ(HashText(*state), hash);
 }
 
 TEST_F(RestoreTest, ASessionEndsWithTheTableEvenIfACallerHoldsIt) {

@@ -16,6 +16,10 @@ inline constexpr char kSessionKey[] = "x-session-id";
 // reaches this server alone: a session of another server is then UNAVAILABLE to it.
 inline constexpr char kForwardedByKey[] = "x-phrenic-via";
 
+// Names the claim by which the web gateway takes the messages of a WatchFrames call itself (watch/watch_claims.h). The
+// gateway removes it from what clients send; a key that this server has not made has no effect.
+inline constexpr char kWatchClaimKey[] = "x-phrenic-watch";
+
 }  // namespace phrenic::service
 
 #endif  // PHRENIC_SERVER_SERVICE_NET_METADATA_KEYS_H_

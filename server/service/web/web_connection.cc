@@ -2,11 +2,9 @@
 
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/strand.hpp>
-#include <sstream>
 
-#include "absl/strings/ascii.h"
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
+#include "server/service/net/metadata_keys.h"
 #include "server/service/web/grpc_web.h"
 #include "server/service/web/origins.h"
 #include "server/service/web/static_files.h"
@@ -25,6 +23,7 @@ constexpr std::size_t kMaxPipelinedBytes = 64 << 10;  // of requests sent before
 constexpr std::size_t kSmallBodyBytes = 64 << 10;     // bodies that anybody may send, and that no budget counts
 constexpr std::chrono::seconds kLingerTime(2);
 constexpr std::size_t kLingerBytes = 1 << 20;
+constexpr std::string_view kWatchMethod = "/phrenic.v1.FrameService/WatchFrames";
 
 std::string_view View(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -56,7 +55,8 @@ WebConnection::WebConnection(net::ip::tcp::socket socket, const std::shared_ptr<
     : stream_(std::move(socket), tls),
       buffer_(kMaxHeaderBytes + kMaxPipelinedBytes),
       shared_(shared),
-      settings_(shared.settings) {
+      settings_(shared.settings),
+      reply_(stream_, shared.settings.idle_time) {
   beast::error_code error;
   const auto peer = stream_.tcp().socket().remote_endpoint(error);
   peer_ = error ? "unknown" : peer.address().to_string();  // an empty peer would be a call from within the process
@@ -337,6 +337,7 @@ void WebConnection::DiscardInput(std::size_t left) {
 }
 
 void WebConnection::Disconnect() {
+  watch_ = nullptr;
   if (call_ != nullptr) std::exchange(call_, nullptr)->Cancel();
   beast::error_code ignored;
   stream_.tcp().socket().shutdown(net::ip::tcp::socket::shutdown_both, ignored);
@@ -344,16 +345,16 @@ void WebConnection::Disconnect() {
 }
 
 void WebConnection::StartCall(Request request) {
-  const std::string_view content_type = View(request[http::field::content_type]);
-  base64_ = IsGrpcWebText(content_type);
+  const bool text = IsGrpcWebText(View(request[http::field::content_type]));
   call_ended_ = false;
-  head_ = CallHead(base64_, stream_.encrypted(), origin_, keep_alive_);
-  auto message = ParseRequestBody(std::move(request.body()), base64_);
+  reply_.Begin(CallHead(text, stream_.encrypted(), origin_, keep_alive_), text);
+  auto message = ParseRequestBody(std::move(request.body()), text);
   if (!message.ok()) {
     return SendTrailers({grpc::StatusCode::INVALID_ARGUMENT, std::string(message.status().message())}, {});
   }
   WebCall::Request call = *std::exchange(call_request_, std::nullopt);
   call.message = *std::move(message);
+  ClaimWatch(call);
   const auto self = shared_from_this();
   auto started = WebCall::Start(
       shared_.stub, std::move(call), stream_.get_executor(),
@@ -366,44 +367,55 @@ void WebConnection::StartCall(Request request) {
   WatchForDisconnect();
 }
 
+// Headers that leave no room for the key are sent without it: the messages then come over gRPC.
+void WebConnection::ClaimWatch(WebCall::Request& call) {
+  call.metadata.erase(kWatchClaimKey);
+  if (call.method != kWatchMethod) return;
+  watch_ = std::make_unique<WebWatch>(shared_.watches, stream_.get_executor(), [weak = weak_from_this()] {
+    if (const auto self = weak.lock()) self->PumpWatch();
+  });
+  const auto added = call.metadata.emplace(kWatchClaimKey, watch_->key());
+  if (!CheckMetadata(call.metadata).ok()) call.metadata.erase(added);
+}
+
 void WebConnection::SendMessage(const grpc::ByteBuffer& message) {
-  message.Dump(&slices_);
-  const std::array<char, 5> prefix = MessagePrefix(static_cast<std::uint32_t>(message.Length()));
-  std::string frame(prefix.data(), prefix.size());
-  if (base64_) {
-    for (const grpc::Slice& slice : slices_) frame.append(reinterpret_cast<const char*>(slice.begin()), slice.size());
-    slices_.clear();
+  const auto sent = [self = shared_from_this()](beast::error_code error) { self->OnMessageSent(error); };
+  if (reply_.SendMessage(message, sent)) OnMessageSent({});
+}
+
+void WebConnection::PumpWatch() {
+  while (watch_ != nullptr && !reply_.writing()) {
+    stream::Bytes message = watch_->Take();
+    if (message == nullptr) return;
+    const bool at_once = reply_.SendMessage(std::move(message), [self = shared_from_this()](beast::error_code error) {
+      if (self->watch_ != nullptr) self->watch_->NoteSent();
+      self->OnMessageSent(error);
+    });
+    if (!at_once) return;
+    watch_->NoteSent();
   }
-  SendChunk(frame, false);
 }
 
 void WebConnection::SendTrailers(const grpc::Status& status, const std::multimap<std::string, std::string>& trailers) {
-  slices_.clear();
-  SendChunk(TrailersFrame(status, trailers), true);
-}
-
-void WebConnection::SendChunk(const std::string& frame, bool last) {
-  const std::string encoded = base64_ ? absl::Base64Escape(frame) : frame;
-  std::size_t size = encoded.size();
-  for (const grpc::Slice& slice : slices_) size += slice.size();
-  chunk_head_ = absl::StrCat(std::exchange(head_, {}), absl::Hex(size), "\r\n", encoded);
-  chunk_tail_ = last ? "\r\n0\r\n\r\n" : "\r\n";
-  std::vector<net::const_buffer> buffers = {net::buffer(chunk_head_)};
-  for (const grpc::Slice& slice : slices_) buffers.emplace_back(slice.begin(), slice.size());
-  buffers.push_back(net::buffer(chunk_tail_));
-  stream_.tcp().expires_after(settings_.idle_time);
-  net::async_write(stream_, buffers, [self = shared_from_this(), last](beast::error_code error, std::size_t) {
-    self->OnChunkSent(error, last);
-  });
-}
-
-void WebConnection::OnChunkSent(beast::error_code error, bool last) {
-  slices_.clear();
-  if (error) return Disconnect();
-  if (!last) {
-    if (call_ != nullptr) call_->ReadNext();
+  watch_ = nullptr;
+  if (reply_.writing()) {
+    when_sent_ = [this, status, trailers] { SendTrailers(status, trailers); };
     return;
   }
+  const auto sent = [self = shared_from_this()](beast::error_code error) { self->OnTrailersSent(error); };
+  if (reply_.SendTrailers(status, trailers, sent)) OnTrailersSent({});
+}
+
+void WebConnection::OnMessageSent(beast::error_code error) {
+  const auto trailers = std::exchange(when_sent_, nullptr);
+  if (error) return Disconnect();
+  if (trailers) return trailers();
+  if (watch_ != nullptr) PumpWatch();
+  if (call_ != nullptr) call_->ReadNext();
+}
+
+void WebConnection::OnTrailersSent(beast::error_code error) {
+  if (error) return Disconnect();
   call_ = nullptr;
   body_share_.reset();
   call_ended_ = true;

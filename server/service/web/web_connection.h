@@ -25,8 +25,10 @@
 #include "server/service/web/hosts.h"
 #include "server/service/web/static_files.h"
 #include "server/service/web/web_call.h"
+#include "server/service/web/web_reply.h"
 #include "server/service/web/web_request.h"
 #include "server/service/web/web_stream.h"
+#include "server/service/web/web_watch.h"
 
 namespace phrenic::service {
 
@@ -74,6 +76,7 @@ struct WebShared {
   const AllowedHosts& hosts;
   grpc::GenericStub& stub;
   BodyBudget& bodies;
+  WatchClaims& watches;
 };
 
 // Runs on its own strand. Run, Refuse, Close and waiting_since are thread-safe.
@@ -157,15 +160,18 @@ class WebConnection final : public std::enable_shared_from_this<WebConnection> {
 
   // Answers with trailers alone if the body is not one message, or if the method has no valid name.
   void StartCall(Request request);
+  // Claims the watch of a call to WatchFrames.
+  void ClaimWatch(WebCall::Request& call);
   // Writes one message of the call; the next is read when this one is written.
   void SendMessage(const grpc::ByteBuffer& message);
-  // Writes the last chunk, with the headers if no message was sent.
+  // Writes the messages of watch_ that may be sent now, one at a time.
+  void PumpWatch();
+  // Writes the last chunk, with the headers if no message was sent; after the message that is being written.
   void SendTrailers(const grpc::Status& status, const std::multimap<std::string, std::string>& trailers);
-  // Writes `frame` and then slices_ as one chunk of the body (RFC 9112 section 7.1). slices_ are written without a
-  // copy. The first chunk comes with head_.
-  void SendChunk(const std::string& frame, bool last);
-  // Reads the next message, or ends the request after the last chunk.
-  void OnChunkSent(boost::beast::error_code error, bool last);
+  // Goes on after a message: with waiting trailers, or with the next message.
+  void OnMessageSent(boost::beast::error_code error);
+  // Ends the request.
+  void OnTrailersSent(boost::beast::error_code error);
   // Reads during a call, to detect that the browser disconnected. Keeps pipelined requests in buffer_.
   void WatchForDisconnect();
   // Disconnects if the browser is gone, which cancels the call.
@@ -190,13 +196,12 @@ class WebConnection final : public std::enable_shared_from_this<WebConnection> {
   std::optional<BodyBudget::Share> body_share_;   // of a long body, until the call ends
   std::optional<WebCall::Request> call_request_;  // without its message
   // State of the current call.
-  std::shared_ptr<WebCall> call_;        // null: none in progress
-  std::string head_;                     // of the response; sent with its first chunk
-  bool base64_ = false;                  // frames are base64
-  std::string chunk_head_, chunk_tail_;  // around the message bytes of the chunk being written
-  std::vector<grpc::Slice> slices_;      // the message bytes
-  bool reading_during_call_ = false;     // a read of WatchForDisconnect is pending
-  bool call_ended_ = false;              // its last chunk was sent
+  std::shared_ptr<WebCall> call_;     // null: none in progress
+  std::unique_ptr<WebWatch> watch_;   // of a call to WatchFrames; null: none in progress
+  WebReply reply_;                    // its response
+  std::function<void()> when_sent_;   // sends the trailers, which wait for a message; null: none wait
+  bool reading_during_call_ = false;  // a read of WatchForDisconnect is pending
+  bool call_ended_ = false;           // its last chunk was sent
 };
 
 }  // namespace phrenic::service

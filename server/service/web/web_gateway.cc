@@ -19,20 +19,21 @@ constexpr std::size_t kBodies = 4;  // longest messages that are received at a t
 
 }  // namespace
 
-WebGateway::WebGateway(const Options& options, std::shared_ptr<grpc::Channel> channel)
+WebGateway::WebGateway(const Options& options, std::shared_ptr<grpc::Channel> channel, WatchClaims& watches)
     : options_(options),
       hosts_(options.settings.allowed_hosts, options.settings.allowed_origins, options.address),
       stub_(std::move(channel)),
       bodies_(kBodies * options.settings.max_message_bytes, kBodies / 2 * options.settings.max_message_bytes),
-      shared_{options_.settings, hosts_, stub_, bodies_},
+      shared_{options_.settings, hosts_, stub_, bodies_, watches},
       context_(kGatewayThreads),
       acceptor_(context_),
       retry_timer_(context_),
       tls_(options.tls) {}
 
 absl::StatusOr<std::unique_ptr<WebGateway>> WebGateway::Start(const Options& options,
-                                                              std::shared_ptr<grpc::Channel> channel) {
-  std::unique_ptr<WebGateway> gateway(new WebGateway(options, std::move(channel)));
+                                                              std::shared_ptr<grpc::Channel> channel,
+                                                              WatchClaims& watches) {
+  std::unique_ptr<WebGateway> gateway(new WebGateway(options, std::move(channel), watches));
   if (absl::Status status = gateway->Listen(); !status.ok()) return status;
   gateway->AcceptNext();
   for (int i = 0; i < kGatewayThreads; ++i) {

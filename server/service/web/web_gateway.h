@@ -39,9 +39,11 @@ class WebGateway {
   };
 
   // Listens and serves; gRPC-web calls go to `channel`. Errors: those of ListenOn. The channel is to the gRPC server of
-  // the same process; a message may be as large as that allows. Requires: CheckTls accepts the files.
+  // the same process; a message may be as large as that allows. The messages of WatchFrames are taken by `watches`,
+  // which outlives the gateway. Requires: CheckTls accepts the files.
   static absl::StatusOr<std::unique_ptr<WebGateway>> Start(const Options& options,
-                                                           std::shared_ptr<grpc::Channel> channel);
+                                                           std::shared_ptr<grpc::Channel> channel,
+                                                           WatchClaims& watches);
   // Calls Shutdown.
   ~WebGateway();
 
@@ -52,7 +54,7 @@ class WebGateway {
   void Shutdown() ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
-  WebGateway(const Options& options, std::shared_ptr<grpc::Channel> channel);
+  WebGateway(const Options& options, std::shared_ptr<grpc::Channel> channel, WatchClaims& watches);
   // The errors of ListenOn.
   absl::Status Listen();
   // Waits for the next connection, without blocking.

@@ -27,8 +27,13 @@ Bench::Bench(const Settings& settings, std::unique_ptr<ServerProcess> server)
           v1::SessionService::NewStub(grpc::CreateChannel(server_->address(), grpc::InsecureChannelCredentials()))) {}
 
 absl::StatusOr<std::unique_ptr<Bench>> Bench::Start(const Settings& settings) {
-  auto server = std::make_unique<ServerProcess>(PHRENIC_BINARY_DIR "/streaming_bench.said",
-                                                std::vector<std::string>{"--store", "none", "--max-viewers", "1000"});
+  std::vector<std::string> environment;
+  if (!settings.program.empty()) environment.push_back("PHRENIC_SERVER_PROGRAM=" + settings.program);
+  auto server = std::make_unique<ServerProcess>(
+      PHRENIC_BINARY_DIR "/streaming_bench.said",
+      std::vector<std::string>{"--store", "none", "--max-viewers", "1000", "--max-viewers-in-all", "1000",
+                               "--max-connections", "4000", "--max-calls", "4000"},
+      environment);
   if (absl::Status status = server->Start(); !status.ok()) return status;
   std::unique_ptr<Bench> bench(new Bench(settings, std::move(server)));
   v1::CreateSessionRequest request;

@@ -1,5 +1,6 @@
 // What viewers get and what they cost the server, held against the aims of its design, over real sockets:
-// streaming_bench [fanout] [stalled] [lines] [stepping] [--seconds S] [--viewers N]... The server is a process of its
+// streaming_bench [fanout] [stalled] [lines] [stepping] [--seconds S] [--viewers N]... [--web]
+// [--phrenicd PROGRAM]... The server is a process of its
 // own, and its CPU time is read from outside; times of arrival depend on what else the machine does.
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -8,6 +9,20 @@
 
 namespace phrenic::bench {
 namespace {
+
+// Runs the wanted parts, or all, on one server.
+bool RunParts(const Settings& settings, const std::vector<std::string>& wanted) {
+  auto bench = Bench::Start(settings);
+  if (!bench.ok()) return std::fprintf(stderr, "%s\n", std::string(bench.status().message()).c_str()) < 0;
+  bool complete = true;
+  const std::pair<const char*, bool (*)(Bench&)> parts[] = {
+      {"fanout", FanOut}, {"stalled", Stalled}, {"lines", Lines}, {"stepping", Stepping}};
+  for (const auto& [name, run] : parts) {
+    const bool named = std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+    if (wanted.empty() || named) complete = run(**bench) && complete;
+  }
+  return complete;
+}
 
 int Main(int argc, char** argv) {
   Settings settings;
@@ -18,18 +33,17 @@ int Main(int argc, char** argv) {
   app.add_option("--scene", settings.scene, "Scene that is watched")->capture_default_str();
   app.add_option("--seconds", settings.seconds, "Seconds that each row is watched")->check(CLI::Range(0.2, 60.0));
   app.add_option("--viewers", settings.viewers, "Viewers of the fan-out's rows")->check(CLI::Range(1, 900));
+  app.add_flag("--web", settings.web_alone, "Of the fan-out, the rows of gRPC-web alone");
+  std::vector<std::string> programs;
+  app.add_option("--phrenicd", programs, "Servers to run each part on, one after the other; this build's if not given")
+      ->check(CLI::ExistingFile);
   CLI11_PARSE(app, argc, argv);
-  auto bench = Bench::Start(settings);
-  if (!bench.ok()) {
-    std::fprintf(stderr, "%s\n", std::string(bench.status().message()).c_str());
-    return 1;
-  }
+  if (programs.empty()) programs.emplace_back();
   bool complete = true;
-  const std::pair<const char*, bool (*)(Bench&)> parts[] = {
-      {"fanout", FanOut}, {"stalled", Stalled}, {"lines", Lines}, {"stepping", Stepping}};
-  for (const auto& [name, run] : parts) {
-    const bool named = std::find(wanted.begin(), wanted.end(), name) != wanted.end();
-    if (wanted.empty() || named) complete = run(**bench) && complete;
+  for (const std::string& program : programs) {
+    settings.program = program;
+    if (!program.empty()) std::printf("%s\n", program.c_str());
+    complete = RunParts(settings, wanted) && complete;
   }
   return complete ? 0 : 1;
 }

@@ -17,6 +17,8 @@ struct Settings {
   std::string scene = "thorax";
   double seconds = 4;
   std::vector<int> viewers = {1, 10, 100, 500};
+  bool web_alone = false;  // of the fan-out's rows, those of gRPC-web
+  std::string program;     // the phrenicd that runs; empty: this build's
 };
 
 // The server with a session that plays.
