@@ -76,7 +76,7 @@ std::string Parameters() {
 }
 
 std::string Physique() {
-  std::string text = Heading("Numbers of a body, set by --physique NAME=VALUE");
+  std::string text = Heading("Body, set by NAME=VALUE");
   for (const ParameterRow& row : PhysiqueRows()) text += Pair(row.name, MeaningOf(row));
   return text;
 }
