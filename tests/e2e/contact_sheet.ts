@@ -88,7 +88,11 @@ async function picturesOf(browser: Browser, server: Server, { numbers }: NamedBo
   await server.phrenic("create", "thorax", "--id", id, ...numbers.flatMap((number) => ["--physique", number]));
   const viewer = await ViewerPage.open(browser, `${server.url}?session=${id}`, size);
   const { page } = viewer;
-  await page.addStyleTag({ content: "body * { visibility: hidden } #stage > canvas { visibility: visible }" });
+  await hideControls(page);
+  await page.evaluate(() => {
+    document.body.style.visibility = "hidden";
+    document.querySelector<HTMLElement>("#stage > canvas")!.style.visibility = "visible";
+  });
   await choose(page, "quality", "full");
   const pictures: Buffer[] = [];
   const eyes: [number, number, number][] = [];
