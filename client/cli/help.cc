@@ -75,8 +75,8 @@ std::string Parameters() {
   return text;
 }
 
-std::string Physique() {
-  std::string text = Heading("Numbers of a body, set by --physique NAME=VALUE");
+std::string PhysiqueNumbers() {
+  std::string text = Heading("Body, set by NAME=VALUE");
   for (const ParameterRow& row : PhysiqueRows()) text += Pair(row.name, MeaningOf(row));
   return text;
 }
@@ -124,7 +124,7 @@ std::string CommandHelp(const CLI::App& command, CommandTable commands) {
   const Command* row = FindCommand(commands, PathOf(command));
   if (row != nullptr && !row->examples().empty()) text += Heading("Examples") + Examples(row->examples());
   text += CommandsOf(command) + List("Arguments", PositionalsOf(command)) + List("Options", OptionsOf(command));
-  if (TakesPhysique(command)) text += Physique();
+  if (TakesPhysique(command)) text += PhysiqueNumbers();
   if (SetsParameters(command)) text += Heading("Parameters, set by NAME=VALUE") + Parameters();
   text += command.get_footer();
   return text + "\n" +

@@ -27,7 +27,7 @@ double Share(double z) {
 bool IsSoft(v1::Structure structure) { return structure == v1::STRUCTURE_LUNG || structure == v1::STRUCTURE_DIAPHRAGM; }
 
 // Returns the bounds of the box that the body's map makes of the generated thorax' box [mm].
-Eigen::AlignedBox3d BoundsOf(const PhantomBody& body) {
+Eigen::AlignedBox3d PlacedBox(const PhantomBody& body) {
   Eigen::AlignedBox3d bounds;
   const int parts = body.physique == nullptr ? 1 : 12;
   for (int k = 0; k <= parts; ++k) {
@@ -42,7 +42,7 @@ Eigen::AlignedBox3d BoundsOf(const PhantomBody& body) {
 }
 
 LabelVolume EmptyVolume(const PhantomBody& body, double voxel) {
-  const Eigen::AlignedBox3d bounds = BoundsOf(body);
+  const Eigen::AlignedBox3d bounds = PlacedBox(body);
   const Eigen::Vector3d low = bounds.min(), high = bounds.max();
   LabelVolume volume;
   volume.size = ((high - low) / voxel).array().ceil().cast<int>() + 1;

@@ -60,8 +60,10 @@ Mesh Together(const std::vector<v1::Anatomy>& parts) {
 }
 
 TEST(TenBodies, AreWatertightAndCrossNothingAtRest) {
+  const auto groups = ApartGroups();
   std::vector<Mesh> apart;
-  for (const auto& group : ApartGroups()) apart.push_back(Together(group));
+  apart.reserve(groups.size());
+  for (const auto& group : groups) apart.push_back(Together(group));
   for (const NamedBody& body : TenBodies()) {
     SCOPED_TRACE(body.title);
     const PhysiqueMap map(body.physique);

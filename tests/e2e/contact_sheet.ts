@@ -74,8 +74,8 @@ export async function bodySheet(browser: Browser, server: Server, path: string):
     const { pictures, distance } = await picturesOf(browser, server, body, `body-${i}`);
     adult ??= distance;
     // The viewer fits each body into the window: its distance is the scale.
-    const width = Math.round(tileWidth * (distance / adult));
-    const images = pictures.map((picture) => `<div class="tile">${image(picture, width)}</div>`);
+    const scale = (tileWidth / clip.width) * (distance / adult);
+    const images = pictures.map((picture) => `<div class="tile">${image(picture, size.width * scale)}</div>`);
     tiles.push(`<figure><figcaption>${body.title}</figcaption>${images.join("")}</figure>`);
   }
   await writeSheet(browser, tiles, bodies.length / 2, path, 75);
@@ -89,6 +89,10 @@ async function picturesOf(browser: Browser, server: Server, { numbers }: NamedBo
   const viewer = await ViewerPage.open(browser, `${server.url}?session=${id}`, size);
   const { page } = viewer;
   await hideControls(page);
+  await page.evaluate(() => {
+    document.body.style.visibility = "hidden";
+    document.querySelector<HTMLElement>("#stage > canvas")!.style.visibility = "visible";
+  });
   await choose(page, "quality", "full");
   const pictures: Buffer[] = [];
   const eyes: [number, number, number][] = [];
@@ -96,7 +100,7 @@ async function picturesOf(browser: Browser, server: Server, { numbers }: NamedBo
     await click(page, `[data-view="${side}"]`);
     await page.waitForTimeout(3000);
     eyes.push(await page.evaluate(() => window.phrenic!.eye()));
-    pictures.push(await page.screenshot({ clip, type: "png" }));
+    pictures.push(await page.screenshot({ type: "png" }));
   }
   await viewer.close();
   await server.phrenic("delete", id);
@@ -112,6 +116,7 @@ async function writeSheet(browser: Browser, tiles: string[], across: number, pat
   const style = `body { margin: 0; background: #171c22; color: #e8eaed; font: 14px sans-serif; display: flex; flex-wrap: wrap }
     figure { margin: 0; width: ${tileWidth}px } figcaption { padding: 8px 0 4px; text-align: center }
     .tile { height: 285px; overflow: hidden; display: flex; align-items: center; justify-content: center }
+    .tile > img { flex: none }
     img { display: block; width: ${tileWidth}px }`;
   await page.setContent(`<style>${style}</style>${tiles.join("")}`);
   await page.locator("body").screenshot({ path, type: "jpeg", quality });
