@@ -79,6 +79,7 @@ absl::StatusOr<LiveLungs> LiveLungs::Make(const Model& model, const StopCheck& s
 
 std::vector<Eigen::VectorXd> LiveLungs::AmplitudesAt(const State& state, const v1::Parameters& parameters) const {
   std::vector<Eigen::VectorXd> amplitudes;
+  amplitudes.reserve(lungs_.size());
   if (!drive_) {
     const EvalContext at = MakeEvalContext(model_, parameters, state, {});
     for (size_t i = 0; i < lungs_.size(); ++i) amplitudes.emplace_back(LungModes::AmplitudesAt(at));

@@ -101,6 +101,7 @@ std::vector<LungMotion> BreathingLungs::Motions(const Recording& breath) const {
   const std::array<double, 2> opened = {peak.space[0] - base.space[0], peak.space[1] - base.space[1]};
   const std::array<double, 2> pressures = FillingPressures(opened, followed, pressed);
   std::vector<LungMotion> motions;
+  motions.reserve(tissues_.size());
   for (size_t i = 0; i < tissues_.size(); ++i) {
     motions.push_back({tissues_[i], lungs[i].followed + pressures[drive_.side(i)] * lungs[i].pressed});
   }

@@ -9,7 +9,7 @@
 namespace phrenic::physiology {
 namespace {
 
-Eigen::Vector3d AreaOf(const Eigen::Matrix3d& x) { return (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)) / 2; }
+Eigen::Vector3d TurnedArea(const Eigen::Matrix3d& x) { return (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)) / 2; }
 
 }  // namespace
 
@@ -36,7 +36,7 @@ std::array<double, 2> Mediastinum::SweptBy(const Faces& faces, const ConstPoints
   for (size_t side = 0; side < swept.size(); ++side) {
     for (const Eigen::Vector3i& corners : faces.of_side[side]) {
       const Eigen::Matrix3d before = faces.rest(Eigen::all, corners), after = now(Eigen::all, corners);
-      swept[side] += faces.outwards * AreaOf((before + after) / 2).dot((after - before).rowwise().mean());
+      swept[side] += faces.outwards * TurnedArea((before + after) / 2).dot((after - before).rowwise().mean());
     }
   }
   return swept;
