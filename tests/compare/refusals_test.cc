@@ -45,7 +45,8 @@ constexpr Use kUses[] = {
      "bodies { name: 'seen' role: ROLE_SEEN grid { columns: 3 rows: 3 u { x: 0.1 } v { y: 0.1 } } } "
      "motions { skin { bodies: 'seen' drivers: 'a' mode: SKIN_MODE_TRIANGLES } }"},
     {"a lung",
-     "bodies { name: 'a' role: ROLE_SEEN anatomy { structure: STRUCTURE_LUNG side: SIDE_LEFT } file { path: 'a.stl' } "
+     "bodies { name: 'a' role: ROLE_DEFORMABLE mass: 1 anatomy { structure: STRUCTURE_LUNG side: SIDE_LEFT } file { "
+     "path: 'a.stl' } "
      "} "
      "motions { lung_modes { lungs: 'a' } }"},
 };

@@ -92,19 +92,21 @@ bool IsOfCage(const Part& part) {
          part.Is(v1::STRUCTURE_MANUBRIUM) || part.Is(v1::STRUCTURE_XIPHOID);
 }
 
-TEST_F(RealThorax, RibsFromLungsAndSpineAreCloserThanTheUnregisteredTemplate) {
+// This person has about the template's size: scaled by what is seen of lungs and spine, its ribs are no closer than in
+// their own size at the same place.
+TEST_F(RealThorax, RibsFromLungsAndSpineAreNearTheRealOnes) {
   const FilledParts filled = FillWithout(IsOfCage);
   ASSERT_TRUE(filled.report.not_filled().empty()) << filled.report.not_filled();
-  TemplateFit centred;  // the template in its own size, at the same place
-  for (int axis = 0; axis < 3; ++axis) centred.shift[axis] = 0;
-  const auto fit = FitTemplate(seen_.volume, seen_.parts, false);
+  std::vector<Part> rest = seen_.parts;
+  std::erase_if(rest, IsOfCage);
+  const auto fit = FitTemplate(seen_.volume, rest, false);
   ASSERT_TRUE(fit.ok()) << fit.status();
-  centred.shift = fit->ToPerson({0, 20, 200}) - Eigen::Vector3d(0, 20, 200);
-  const double off = RibsOff(filled), without = RibsOff(FillWithout(IsOfCage, &centred));
-  std::printf("real thorax, ribs from lungs and spine: assd %.1f mm, fit %.1f mm; unscaled %.1f mm\n", off,
-              filled.report.residual_mm(), without);
-  EXPECT_LT(off, 12);
-  EXPECT_LT(off, without);
+  const Eigen::Vector3d centre(0, 20, 200);  // of the template [mm]
+  TemplateFit unscaled;
+  unscaled.shift = fit->ToPerson(centre) - centre;
+  std::printf("real thorax, ribs from lungs and spine: assd %.1f mm, fit %.1f mm; unscaled %.1f mm\n", RibsOff(filled),
+              filled.report.residual_mm(), RibsOff(FillWithout(IsOfCage, &unscaled)));
+  EXPECT_LT(RibsOff(filled), 8);
 }
 
 TEST_F(RealThorax, TheFilledHeartKeepsTheSheetDown) {
@@ -112,7 +114,8 @@ TEST_F(RealThorax, TheFilledHeartKeepsTheSheetDown) {
   const double off = DiaphragmOff(filled.volume, filled.parts), without = DiaphragmOff(seen_.volume, seen_.parts);
   std::printf("real thorax without heart and liver, diaphragm: assd %.1f mm filled, %.1f mm not filled\n", off,
               without);
-  EXPECT_LT(off, without);
+  EXPECT_LT(off, 5);
+  EXPECT_LT(off, 0.7 * without);
 }
 
 }  // namespace

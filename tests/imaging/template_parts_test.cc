@@ -35,7 +35,6 @@ bool IsCage(const v1::LabelMeaning& label) {
          structure == v1::STRUCTURE_XIPHOID;
 }
 bool IsLung(const v1::LabelMeaning& label) { return label.anatomy().structure() == v1::STRUCTURE_LUNG; }
-bool IsHeart(const v1::LabelMeaning& label) { return label.organ() == v1::ORGAN_HEART; }
 
 // Returns a phantom without the labels that fulfil the condition. Keeps the whole ones.
 LabelVolume Without(bool (*gone)(const v1::LabelMeaning&), const PhantomBody& body) {
@@ -123,20 +122,18 @@ TEST(TemplateParts, RibsAreFilledFromLungsAndSpineCloserThanTheUnregisteredTempl
 }
 
 TEST(TemplateParts, LungsAreFilledFromRibsAndSpineCloserThanTheUnregisteredTemplate) {
-  for (const char* name : {"small", "flat"}) {
-    const PhantomBody body = *FindPhantomBody(name);
-    const LabelVolume volume = Without(IsLung, body);
-    const FilledParts filled = FillFromTemplate(volume, Seen(volume));
-    EXPECT_THAT(filled.report.parts(), testing::ElementsAre("lung-right", "lung-left"));
-    const Distance off = OffTruth(filled, v1::STRUCTURE_LUNG, body);
-    const TemplateFit fit = Unregistered(body);
-    const Distance without = OffTruth(FillFromTemplate(volume, Seen(volume), &fit), v1::STRUCTURE_LUNG, body);
-    std::printf("lungs of %s from ribs and spine: assd %.1f mm, hd95 %.1f mm; unregistered %.1f and %.1f\n", name,
-                off.assd, off.hd95, without.assd, without.hd95);
-    EXPECT_LT(off.assd, 5);
-    EXPECT_LT(off.hd95, 20) << "the height of flat domes is not known from ribs";
-    EXPECT_LT(off.assd, without.assd);
-  }
+  const PhantomBody body = *FindPhantomBody("small");
+  const LabelVolume volume = Without(IsLung, body);
+  const FilledParts filled = FillFromTemplate(volume, Seen(volume));
+  EXPECT_THAT(filled.report.parts(), testing::ElementsAre("lung-right", "lung-left"));
+  const Distance off = OffTruth(filled, v1::STRUCTURE_LUNG, body);
+  const TemplateFit fit = Unregistered(body);
+  const Distance without = OffTruth(FillFromTemplate(volume, Seen(volume), &fit), v1::STRUCTURE_LUNG, body);
+  std::printf("lungs of small from ribs and spine: assd %.1f mm, hd95 %.1f mm; unregistered %.1f and %.1f\n", off.assd,
+              off.hd95, without.assd, without.hd95);
+  EXPECT_LT(off.assd, 2);
+  EXPECT_LT(off.hd95, 6);
+  EXPECT_LT(off.assd, 0.8 * without.assd);
 }
 
 TEST(TemplateParts, AWholeVolumeIsNotFilled) {
@@ -228,27 +225,6 @@ TEST(TemplateParts, APatientWithoutRibsIsFilledMarkedAndNeverBetterThanWithCare)
   const Distance off = Between(patient->bodies.front().mesh, truth);
   std::printf("diaphragm without ribs: assd %.1f mm, hd95 %.1f mm\n", off.assd, off.hd95);
   EXPECT_LT(off.assd, 6);
-}
-
-TEST(TemplateParts, AHeartThatIsFilledKeepsTheSheetDownBetweenTheLungs) {
-  const PhantomBody body = *FindPhantomBody("adult");
-  const LabelVolume volume = Without(IsHeart, body);
-  v1::Anatomy sheet;
-  sheet.set_structure(v1::STRUCTURE_DIAPHRAGM);
-  Mesh truth = *PhantomPart(body, sheet, 6);
-  double assd[2];
-  for (const bool fill : {false, true}) {
-    const auto patient = MakeCoarse(volume, fill);
-    ASSERT_TRUE(patient.ok()) << patient.status();
-    Mesh placed = truth;
-    placed.vertices.row(0).array() += 1e-3 * patient->report.moved_left_mm();
-    const Distance off = Between(patient->bodies.front().mesh, placed);
-    std::printf("diaphragm without heart, %s: assd %.1f mm, hd95 %.1f mm\n", fill ? "filled" : "not filled", off.assd,
-                off.hd95);
-    assd[fill ? 1 : 0] = off.assd;
-    EXPECT_NE(patient->report.readiness().verdict(), v1::READINESS_VERDICT_READY);
-  }
-  EXPECT_LT(assd[1], assd[0]);
 }
 
 }  // namespace
