@@ -1,5 +1,6 @@
 import { createGrpcWebTransport } from "@connectrpc/connect-web";
 import { App } from "./app/app";
+import { patientOpener } from "./app/patient_opener";
 import { createApi, errorText } from "./connection/api";
 import { Credentials, credentialsInterceptor, storeJoinLink } from "./connection/credentials";
 import { Identity, identityInterceptor } from "./connection/identity";
@@ -37,7 +38,9 @@ function address(sessionId: string): string {
 
 await openLanguage(languageOf(here, ownStorage, navigator.languages), fetchJson);
 
-const chooser = new SessionChooser(api, (sessionId) => location.assign(address(sessionId)));
+const openSession = (sessionId: string) => location.assign(address(sessionId));
+const importPatient = patientOpener(api, openSession);
+const chooser = new SessionChooser(api, openSession, () => void importPatient());
 document.body.append(chooser.element);
 
 const loading = elementById("loading");
@@ -79,7 +82,7 @@ try {
   // A launch goes on in the next page, also where the browser keeps nothing.
   const launch = identity.launched ? here.hash : "";
   const open = (query: string) => location.assign(withPageView(query, viewNow()) + launch);
-  const subject = { sessionId, secondSessionId, view, lesson, address: here, open };
+  const subject = { sessionId, secondSessionId, view, lesson, address: here, open, importPatient };
   new App(api, subject, chooser, identity, systemClock).start();
 } catch (error) {
   loading.replaceChildren(

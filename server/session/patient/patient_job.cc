@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t kFirstBytes = 256;
 constexpr double kReading = 0.05;           // share of the progress
 constexpr double kSmallestProgress = 0.01;  // smallest change of progress that is reported
-constexpr char kPatientName[] = "patient";  // of every patient's scene
+constexpr char kPatientName[] = "patient", kTitle[] = "A patient from a segmentation";  // of every patient's scene
 
 absl::Status CheckVerdict(const v1::Readiness& readiness, bool anyway) {
   if (anyway || readiness.verdict() != v1::READINESS_VERDICT_NOT_USABLE) return absl::OkStatus();
@@ -99,6 +99,7 @@ absl::Status PatientJob::Run(jobs::Progress<v1::Patient> progress) {
   absl::Status verdict = CheckVerdict(report_.readiness(), start_.request.anyway());
   if (!verdict.ok()) return verdict;
   scene_ = std::move(patient->scene);
+  scene_.set_title(kTitle);
   return UploadSurfaces(patient->bodies);
 }
 

@@ -80,20 +80,24 @@ test("ADroppedDicomSegmentationBecomesABreathingPatient", async () => {
   expect(await readFile(join(outFolder, "phrenicd.log"), "utf8")).not.toMatch(/DOE\^JANE|Doe\^Jane/);
 }, 400_000);
 
-test.runIf(existsSync(slab))("ASlabIsRefusedWithItsReasons", async () => {
-  const viewer = await ViewerPage.open(browser, `${server.url}?session=cube&lang=de`, { width: 1280, height: 900 });
-  await viewer.waitForPicture();
-  await drop(viewer, slab, "slab.nii.gz");
-  const { page } = viewer;
-  await page.click("#patient-make", patience);
-  await page.waitForSelector("#patient-verdict", patience);
-  expect(await page.locator("#patient-verdict").getAttribute("data-verdict")).toBe("NOT_USABLE");
-  expect(await page.locator("#patient-verdict").textContent()).toMatch(/^Nicht brauchbar/);
-  expect(await page.locator("#patient-reasons li").count()).toBeGreaterThan(2);
-  expect(await page.locator("#patient-open").count()).toBe(0);
-  await viewer.saveScreenshot("patient_refused");
-  await page.click("#patient-cancel");
-  await page.waitForSelector("#patient-file");
-  expect(viewer.consoleErrors).toEqual([]);
-  await viewer.close();
-}, 300_000);
+test.runIf(existsSync(slab))(
+  "ASlabIsRefusedWithItsReasons",
+  async () => {
+    const viewer = await ViewerPage.open(browser, `${server.url}?session=cube&lang=de`, { width: 1280, height: 900 });
+    await viewer.waitForPicture();
+    await drop(viewer, slab, "slab.nii.gz");
+    const { page } = viewer;
+    await page.click("#patient-make", patience);
+    await page.waitForSelector("#patient-verdict", patience);
+    expect(await page.locator("#patient-verdict").getAttribute("data-verdict")).toBe("NOT_USABLE");
+    expect(await page.locator("#patient-verdict").textContent()).toMatch(/^Nicht brauchbar/);
+    expect(await page.locator("#patient-reasons li").count()).toBeGreaterThan(2);
+    expect(await page.locator("#patient-open").count()).toBe(0);
+    await viewer.saveScreenshot("patient_refused");
+    await page.click("#patient-cancel");
+    await page.waitForSelector("#patient-file");
+    expect(viewer.consoleErrors).toEqual([]);
+    await viewer.close();
+  },
+  300_000,
+);

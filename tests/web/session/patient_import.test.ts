@@ -117,6 +117,6 @@ test("FoldersAreReadToTheirLastEntry", async () => {
     };
   };
   const dropped = folder([entry("a"), folder([entry("b"), entry("c")]), entry("d")]);
-  const files = await droppedFiles([dropped as unknown as FileSystemEntry], []);
+  const files = await droppedFiles({ entries: [dropped as unknown as FileSystemEntry], files: [] });
   expect(files.map(({ name }) => name)).toEqual(["a", "b", "c", "d"]);
 });

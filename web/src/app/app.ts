@@ -62,6 +62,7 @@ import { filmStage } from "./film_stage";
 import { appShortcuts } from "./app_shortcuts";
 import { Fluoroscopy } from "./fluoroscopy";
 import { stageInsets } from "./insets";
+import type { PatientOpener } from "./patient_opener";
 import { SceneTools } from "./scene_tools";
 import { SecondView } from "./second_view";
 import { sessionFrames } from "./session_frames";
@@ -91,6 +92,7 @@ export interface PageTarget {
   address: URL;
   /** Reloads the page with this query string. */
   open(query: string): void;
+  importPatient: PatientOpener;
 }
 
 /** One session on one page: connects the connection, the viewer and the panels. */
@@ -308,7 +310,7 @@ export class App {
     const drop = dropZone(
       document.body,
       (file) => void this.comparisons.compare(file),
-      (dropped) => void this.chooser.importPatient(dropped),
+      (dropped) => void this.target.importPatient(dropped),
     );
     elementById("stage").append(drop, tools.forceLabel, tools.structures.label, ...tools.measuring.overlays);
     if (this.secondView !== undefined) {
@@ -354,8 +356,11 @@ export class App {
   private studiesPanel(): HTMLElement {
     const panel = section(t("Studies"), false);
     return loadOnOpen(panel, async () => {
-      const { fillStudies } = await import("../panels/jobs/studies_panel");
-      fillStudies(panel, this.api, this.clock, this.controller);
+      const [{ fillStudies }, { Studies }] = await Promise.all([
+        import("../panels/jobs/studies_panel"),
+        import("../session/studies"),
+      ]);
+      fillStudies(panel, new Studies(this.api, this.clock), this.controller);
     });
   }
 

@@ -1,11 +1,6 @@
 import { make } from "../dom/elements";
 import { t } from "../language/translate";
-
-/** What is dropped on the page: files, and the folders among them. */
-export interface Dropped {
-  files: File[];
-  entries: FileSystemEntry[];
-}
+import type { Dropped } from "../patient/patient_files";
 
 /**
  * Accepts what is dropped anywhere on the page, and shows a hint while it is dragged over it. `take` gets a surface,

@@ -1,11 +1,10 @@
 import type { Api } from "../connection/api";
-import type { Dropped } from "../app/drop_zone";
 import { make } from "../dom/elements";
 import { alertMessage } from "../dom/rows";
 import { type PatientReport, ReadinessVerdict } from "../gen/phrenic/v1/patient_pb";
 import { fixed, t } from "../language/translate";
 import { LabelTable } from "./label_table";
-import { droppedFiles, type FoundFiles } from "./patient_files";
+import { type Dropped, droppedFiles, type FoundFiles } from "./patient_files";
 import { type ImportState, PatientImport } from "./patient_import";
 
 const verdicts: Record<number, string> = {
@@ -43,7 +42,7 @@ export class PatientDialog {
   async start(dropped?: Dropped): Promise<void> {
     if (!this.element.isConnected) document.body.append(this.element);
     if (!this.element.open) this.element.showModal();
-    if (dropped !== undefined) await this.importing.take(await droppedFiles(dropped.entries, dropped.files));
+    if (dropped !== undefined) await this.importing.take(await droppedFiles(dropped));
   }
 
   private show(state: ImportState): void {

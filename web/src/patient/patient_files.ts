@@ -1,3 +1,9 @@
+/** What is dropped on the page: files, and the folders among them. */
+export interface Dropped {
+  files: File[];
+  entries: FileSystemEntry[];
+}
+
 /** What the files of a folder are. */
 export interface FoundFiles {
   /** Files that may hold labels: DICOM Segmentations, RT Structure Sets and NIfTI files. */
@@ -40,7 +46,7 @@ async function kindOf(file: File): Promise<FileKind> {
 }
 
 /** Returns the files of what was dropped, also those in folders. */
-export async function droppedFiles(entries: FileSystemEntry[], files: File[]): Promise<File[]> {
+export async function droppedFiles({ entries, files }: Dropped): Promise<File[]> {
   if (!entries.some((entry) => entry.isDirectory)) return files;
   const found: File[] = [];
   for (const entry of entries) await addFiles(entry, found);

@@ -1,5 +1,6 @@
 import { beforeEach, describe, expect, test } from "vitest";
-import { type Dropped, dropZone } from "../../../../web/src/app/drop_zone";
+import { dropZone } from "../../../../web/src/app/drop_zone";
+import type { Dropped } from "../../../../web/src/patient/patient_files";
 import { make } from "../../../../web/src/dom/elements";
 import { decodeBody } from "../../../../web/src/geometry/bodies";
 import { ComparisonCard } from "../../../../web/src/panels/comparison/comparison_card";

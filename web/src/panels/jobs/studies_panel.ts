@@ -1,11 +1,9 @@
-import type { Api } from "../../connection/api";
 import { download } from "../../dom/download";
 import { make } from "../../dom/elements";
 import { type Study, StudyState } from "../../gen/phrenic/v1/study_pb";
 import type { SessionController } from "../../session/session_controller";
-import { isFinished, Studies, type StudyKind } from "../../session/studies";
+import { isFinished, type Studies, type StudyKind } from "../../session/studies";
 import { t } from "../../language/translate";
-import type { Clock } from "../../timing/clock";
 
 const kinds: [StudyKind, string, string][] = [
   [
@@ -19,8 +17,7 @@ const kinds: [StudyKind, string, string][] = [
 ];
 
 /** Fills a section that starts, lists, cancels and shows studies of the session's scene with its current parameters. */
-export function fillStudies(panel: HTMLDetailsElement, api: Api, clock: Clock, controller: SessionController): void {
-  const studies = new Studies(api, clock);
+export function fillStudies(panel: HTMLDetailsElement, studies: Studies, controller: SessionController): void {
   const kind = make("select", { id: "study-kind" });
   kind.append(...kinds.map(([value, label, title]) => make("option", { value, title: t(title) }, t(label))));
   const start = make("button", { type: "button", id: "study-start" }, t("Start"));

@@ -1,9 +1,7 @@
 import { type Api, errorText } from "../../connection/api";
-import type { Dropped } from "../../app/drop_zone";
 import { make } from "../../dom/elements";
 import { type SceneSummary, type Session, SessionState } from "../../gen/phrenic/v1/session_pb";
 import { t } from "../../language/translate";
-import type { PatientDialog } from "../../patient/patient_dialog";
 
 /** A dialog that opens a running session or starts a session of any scene in the server's catalogue. */
 export class SessionChooser {
@@ -11,24 +9,26 @@ export class SessionChooser {
   private readonly sessions = make("ul");
   private readonly scenes = make("ul");
   private readonly words = make("p", { className: "fault" });
-  private patients: PatientDialog | undefined;
 
   constructor(
     private readonly api: Api,
     private readonly open: (sessionId: string) => void,
+    /** Opens the dialog that makes a patient. */
+    importPatient: () => void,
   ) {
     const close = make("button", { type: "button", onclick: () => this.element.close() }, t("Close"));
+    const patient = make("button", { type: "button", id: "patient-new" }, t("A patient from a segmentation"));
+    patient.onclick = () => {
+      this.element.close();
+      importPatient();
+    };
     this.words.setAttribute("role", "alert");
     this.element.append(
       make("header", {}, make("h2", {}, t("Sessions")), close),
       this.sessions,
       make("h2", {}, t("Start a session of")),
       this.scenes,
-      make(
-        "button",
-        { type: "button", id: "patient-new", onclick: () => void this.importPatient() },
-        t("A patient from a segmentation"),
-      ),
+      patient,
       this.words,
     );
   }
@@ -49,14 +49,6 @@ export class SessionChooser {
     } catch (error) {
       this.words.textContent = errorText(error);
     }
-  }
-
-  /** Opens the dialog that makes a patient of what was dropped, or of a file that the user chooses there. */
-  async importPatient(dropped?: Dropped): Promise<void> {
-    const { PatientDialog } = await import("../../patient/patient_dialog");
-    this.element.close();
-    this.patients ??= new PatientDialog(this.api, this.open);
-    await this.patients.start(dropped);
   }
 
   private sessionRow({ id, scene, sceneTitle, state, viewers }: Session): HTMLElement {
