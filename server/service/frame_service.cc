@@ -167,6 +167,20 @@ grpc::Status FrameService::AckFrames(grpc::CallbackServerContext* context, const
   return ToGrpc(caller.ok() ? Acknowledge(table_, *request, *response) : caller.status());
 }
 
+std::optional<absl::StatusOr<std::string>> FrameService::AckFramesAtOnce(const Metadata& metadata,
+                                                                         const std::string& message) {
+  v1::AckFramesRequest request;
+  const auto peer = metadata.find(kPeerKey);
+  if (peer == metadata.end() || !request.ParseFromString(message)) return std::nullopt;
+  if (!table_.Find(request.session_id()).ok()) return std::nullopt;
+  const std::multimap<grpc::string_ref, grpc::string_ref> headers(metadata.begin(), metadata.end());
+  const auto caller = guard_.Admit(AccessGuard::Headers{headers, peer->second}, request);
+  if (!caller.ok()) return caller.status();
+  v1::AckFramesResponse response;
+  if (absl::Status status = Acknowledge(table_, request, response); !status.ok()) return status;
+  return response.SerializeAsString();
+}
+
 grpc::Status FrameService::GetBasis(grpc::CallbackServerContext* context, const v1::GetBasisRequest* request,
                                     v1::GetBasisResponse* response) {
   const auto call = AdmitToSession(guard_, table_, *context, *request);

@@ -2,14 +2,17 @@
 #ifndef PHRENIC_SERVER_SERVICE_FRAME_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_FRAME_SERVICE_H_
 
+#include <optional>
 #include <string>
 
+#include "absl/status/statusor.h"
 #include "phrenic/v1/frames.pb.h"
 #include "server/service/calls/access_guard.h"
 #include "server/service/calls/call_table.h"
 #include "server/service/calls/fair_share.h"
 #include "server/service/calls/metrics.h"
 #include "server/service/calls/turn.h"
+#include "server/service/net/metadata.h"
 #include "server/service/watch/watch_claims.h"
 #include "server/session/limits.h"
 #include "server/session/table.h"
@@ -35,6 +38,10 @@ class FrameService final {
   // On Lane::kQuick. Not counted towards the rate of requests. The response is the viewer's flow control.
   grpc::Status AckFrames(grpc::CallbackServerContext* context, const v1::AckFramesRequest* request,
                          v1::AckFramesResponse* response);
+  // The same for a call of a browser, without gRPC: returns the serialized response or the error, on the calling
+  // thread. Does not block. nullopt if the session is not this server's or the message is not valid: the call is then
+  // to be made. `metadata` is that of the call, with kPeerKey.
+  std::optional<absl::StatusOr<std::string>> AckFramesAtOnce(const Metadata& metadata, const std::string& message);
   // On Lane::kQuick. The response is empty before the session's first basis.
   grpc::Status GetBasis(grpc::CallbackServerContext* context, const v1::GetBasisRequest* request,
                         v1::GetBasisResponse* response);

@@ -383,6 +383,10 @@ absl::Status Server::Parts::ServeWeb(const ServerOptions& options) {
       .max_connections = static_cast<std::size_t>(options.max_connections),
       .tls = options.tls};
   web_options.settings.framers = options.allowed_origins;
+  web_options.settings.answer = [this](const WebCall::Request& call) -> WebSettings::Answer {
+    if (call.method != "/phrenic.v1.FrameService/AckFrames") return std::nullopt;
+    return frame_service.AckFramesAtOnce(call.metadata, call.message);
+  };
   if (lti != nullptr) lti->AddTo(web_options.settings);
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);

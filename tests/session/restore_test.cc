@@ -192,11 +192,15 @@ TEST_F(RestoreTest, APlayingSessionContinuesToPlay) {
 
 // Sessions that play as fast as they can would take the processor from those that are not restored yet.
 TEST_F(RestoreTest, SessionsPlayOnFromTheirStatesOnceAllAreRestored) {
-  constexpr absl::Duration kStepTime = absl::Milliseconds(10);  // of many steps of a session that plays
+  // A burst ends, and its tick is told, when time has passed.
+  const auto tick_of = [this](const std::string& id) {
+    clock_.Advance(absl::Milliseconds(20));
+    return Find(id)->status().tick();
+  };
   std::map<std::string, std::int64_t> ticks;
   for (const char* id : {"a", "b", "c", "d"}) {
     ASSERT_TRUE(Create(id)->Play(std::nullopt, true, 0).ok());
-    ASSERT_TRUE(Eventually([&] { return Find(id)->status().tick() > 50; }));
+    ASSERT_TRUE(Eventually([&] { return tick_of(id) > 50; }));
     ticks[id] = 0;
   }
   std::map<std::string, std::shared_ptr<Session>> before;
@@ -210,7 +214,8 @@ TEST_F(RestoreTest, SessionsPlayOnFromTheirStatesOnceAllAreRestored) {
   Open();
   std::size_t restored = 0;
   const auto look = [&](const std::string&) {
-    absl::SleepFor(kStepTime);
+    absl::SleepFor(absl::Milliseconds(10));  // many steps of a session that plays
+    clock_.Advance(absl::Milliseconds(20));
     const auto present = table_->List(0, "").sessions;
     EXPECT_LE(present.size(), restored++);
     for (const auto& session : present) EXPECT_EQ(session->status().tick(), ticks[session->id()]) << session->id();
@@ -218,7 +223,7 @@ TEST_F(RestoreTest, SessionsPlayOnFromTheirStatesOnceAllAreRestored) {
   ASSERT_TRUE(table_->Restore(look).ok());
   EXPECT_EQ(restored, ticks.size());
   for (const auto& [id, tick] : ticks) {
-    EXPECT_TRUE(Eventually([&, id = id, tick = tick] { return Find(id)->status().tick() > tick; })) << id;
+    EXPECT_TRUE(Eventually([&, id = id, tick = tick] { return tick_of(id) > tick; })) << id;
   }
   // From first to last tick, so that the whole run is stepped once.
   std::map<std::int64_t, std::string> hashes;

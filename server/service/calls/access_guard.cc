@@ -66,18 +66,18 @@ std::string_view TextOf(const grpc::string_ref& text) { return {text.data(), tex
 
 }  // namespace
 
-absl::StatusOr<Caller> AccessGuard::Identify(const grpc::ServerContextBase& context) const {
+absl::StatusOr<Caller> AccessGuard::Identify(const Headers& headers) const {
   Caller caller;
-  caller.peer = PeerOf(context);
+  caller.peer = headers.peer;
   if (!guarded() || caller.peer.empty()) {
     caller.account.role = v1::ACCESS_ROLE_ADMIN;
     return caller;
   }
-  const auto [first, last] = context.client_metadata().equal_range("x-join");
+  const auto [first, last] = headers.metadata.equal_range("x-join");
   for (auto given = first; given != last; ++given) AddLinks(TextOf(given->second), caller.links);
   KeepLive(caller.links);
-  const auto given = context.client_metadata().find("authorization");
-  if (given == context.client_metadata().end()) {
+  const auto given = headers.metadata.find("authorization");
+  if (given == headers.metadata.end()) {
     if (first != last && caller.links.empty()) return NoLink();
     return caller;
   }
@@ -164,7 +164,7 @@ bool AccessGuard::IsKnown(const Caller& caller) const {
 }
 
 absl::StatusOr<Caller> AccessGuard::AdmitHeaders(const grpc::ServerContextBase& context, const Rule& rule) {
-  auto caller = Identify(context);
+  auto caller = Identify({context.client_metadata(), PeerOf(context)});
   if (caller.ok() && (rule.open || IsKnown(*caller))) return caller;
   Caller unknown;
   unknown.peer = PeerOf(context);
@@ -188,13 +188,17 @@ std::string AccessGuard::KeyOf(const Caller& caller, const grpc::ServerContextBa
 
 absl::StatusOr<Caller> AccessGuard::Admit(const grpc::ServerContextBase& context,
                                           const google::protobuf::Message& request) {
+  return Admit(Headers{context.client_metadata(), PeerOf(context)}, request);
+}
+
+absl::StatusOr<Caller> AccessGuard::Admit(const Headers& headers, const google::protobuf::Message& request) {
   const Rule* rule = access::RuleOf(request.GetDescriptor()->full_name());
   if (rule == nullptr)
     return absl::InternalError(absl::StrCat(request.GetTypeName(), " has no rule in access/rules.cc"));
   const std::string session = SessionOf(request);
-  auto caller = Identify(context);
+  auto caller = Identify(headers);
   Caller who;
-  who.peer = PeerOf(context);
+  who.peer = headers.peer;
   if (caller.ok()) who = *caller;
   absl::Status outcome = CheckRate(*rule, who);
   if (outcome.ok()) outcome = rule->open ? absl::OkStatus() : caller.status();

@@ -6,6 +6,7 @@
 #include <grpcpp/server_context.h>
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,12 @@ namespace phrenic::service {
 // metrics and rates lock themselves.
 class AccessGuard {
  public:
+  // What Admit reads of a call. Views of the call's metadata, names in lower case.
+  struct Headers {
+    const std::multimap<grpc::string_ref, grpc::string_ref>& metadata;
+    std::string peer;  // PeerOf
+  };
+
   // Resources outside of sessions that belong to the caller who made them; they know their owner. CheckOwns names the
   // kind in its error.
   enum class Kind { kExport, kStudy, kPatient };
@@ -50,6 +57,8 @@ class AccessGuard {
   // not exist or is not visible to the caller; INVALID_ARGUMENT for a bad field.
   absl::StatusOr<access::Caller> Admit(const grpc::ServerContextBase& context,
                                        const google::protobuf::Message& request);
+  // The same for a call that does not come over gRPC.
+  absl::StatusOr<access::Caller> Admit(const Headers& headers, const google::protobuf::Message& request);
 
   // Returns the caller by the headers of a call alone, before its request is read. UNAUTHENTICATED if the method needs
   // an account or a link and the caller has none; Admit counts and checks the calls that pass. IncomingCall calls it on
@@ -112,7 +121,7 @@ class AccessGuard {
  private:
   // Reads the address, up to 8 join links and the token. UNAUTHENTICATED for a token that no account has, and for links
   // without a token of which none is live.
-  absl::StatusOr<access::Caller> Identify(const grpc::ServerContextBase& context) const;
+  absl::StatusOr<access::Caller> Identify(const Headers& headers) const;
   // Removes links that no session has, or that have expired. Looks at the first 1000 sessions by id.
   void KeepLive(std::vector<std::string>& links) const;
   // Checks the account's role, then the role in the session. OK for an open rule and without accounts.

@@ -10,9 +10,10 @@
 
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
-#include "server/service/watch/claimed_watch.h"
 
 namespace phrenic::service {
+
+class ClaimedWatch;
 
 // Thread-safe. The server has one. The web gateway claims the watch of a call before it makes the call, which carries
 // the claim's key as kWatchClaimKey; FrameService gives the watch. A key is a random secret of 128 bits that never

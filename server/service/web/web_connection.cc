@@ -4,6 +4,7 @@
 #include <boost/asio/strand.hpp>
 
 #include "absl/strings/str_cat.h"
+#include "server/service/calls/status.h"
 #include "server/service/net/metadata_keys.h"
 #include "server/service/web/grpc_web.h"
 #include "server/service/web/origins.h"
@@ -354,6 +355,7 @@ void WebConnection::StartCall(Request request) {
   }
   WebCall::Request call = *std::exchange(call_request_, std::nullopt);
   call.message = *std::move(message);
+  if (const auto answer = settings_.answer ? settings_.answer(call) : std::nullopt) return SendAnswer(*answer);
   ClaimWatch(call);
   const auto self = shared_from_this();
   auto started = WebCall::Start(
@@ -365,6 +367,16 @@ void WebConnection::StartCall(Request request) {
   }
   call_ = *std::move(started);
   WatchForDisconnect();
+}
+
+void WebConnection::SendAnswer(const absl::StatusOr<std::string>& answer) {
+  if (!answer.ok()) return SendTrailers(ToGrpc(answer.status()), {});
+  const auto sent = [self = shared_from_this()](beast::error_code error) { self->OnMessageSent(error); };
+  if (!reply_.SendMessage(std::make_shared<const std::string>(*answer), sent)) {
+    when_sent_ = [this] { SendTrailers(grpc::Status::OK, {}); };
+    return;
+  }
+  SendTrailers(grpc::Status::OK, {});
 }
 
 // Headers that leave no room for the key are sent without it: the messages then come over gRPC.

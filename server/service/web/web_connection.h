@@ -62,6 +62,10 @@ struct WebSettings {
   // Answers the requests to targets that begin with "/lti/"; calls `done` once, on any thread, before the gateway is
   // destroyed. Returns at once. Null: there are none, and their targets are as all others.
   std::function<void(Form form, std::function<void(Page page)> done)> form = nullptr;
+  // Answers a call without gRPC: returns the serialized response or the error; nullopt if the call is to be made.
+  // Thread-safe. Runs on the connection's strand, so it must be short. Null: every call is made.
+  using Answer = std::optional<absl::StatusOr<std::string>>;
+  std::function<Answer(const WebCall::Request& call)> answer = nullptr;
   // Origins that may frame the viewer, beside allowed_origins.
   std::vector<std::string> framers = {};
   // Returns under which name the sender of a request has its part of the budget for bodies, empty for its IP address;
@@ -160,6 +164,8 @@ class WebConnection final : public std::enable_shared_from_this<WebConnection> {
 
   // Answers with trailers alone if the body is not one message, or if the method has no valid name.
   void StartCall(Request request);
+  // Writes the response of a call that was answered without gRPC.
+  void SendAnswer(const absl::StatusOr<std::string>& answer);
   // Claims the watch of a call to WatchFrames.
   void ClaimWatch(WebCall::Request& call);
   // Writes one message of the call; the next is read when this one is written.

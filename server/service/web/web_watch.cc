@@ -2,6 +2,8 @@
 
 #include <boost/asio/post.hpp>
 
+#include "server/service/watch/claimed_watch.h"
+
 namespace phrenic::service {
 
 WebWatch::WebWatch(WatchClaims& claims, const boost::asio::any_io_executor& strand, std::function<void()> ready)

@@ -13,6 +13,7 @@
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
 #include "server/service/watch/watch_claims.h"
+#include "server/stream/viewer.h"
 
 namespace phrenic::service {
 

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "absl/strings/escaping.h"
+#include "server/service/watch/watch_claims.h"
 #include "tests/fake_clock.h"
 #include "tests/service/server_fixture.h"
 
@@ -253,6 +254,31 @@ TEST_F(WebWatchTest, FramesWaitForAcknowledgements) {
   EXPECT_LT(frames, 10) << "frames were sent without credit, instead of the newest";
 }
 
+// Acknowledgements of browsers do not go through gRPC; their answers and errors are the same.
+TEST_F(WebWatchTest, AnAcknowledgementIsAnsweredAsOverGrpc) {
+  const auto web = Web("session_id: 'cube' watch_id: 'page' max_unacked_frames: 2");
+  ASSERT_TRUE(web->NextFrame().has_value());
+  RawSocket socket(server_->web_port());
+  for (const char* text : {"session_id: 'cube' watch_id: 'page' sequence: 1", "session_id: 'cube' watch_id: 'other'",
+                           "session_id: 'nothing' watch_id: 'page'", "session_id: 'cube' sequence: -1", ""}) {
+    v1::AckFramesResponse wanted, given;
+    const grpc::Status status = Call(*frames_, &v1::FrameService::Stub::AckFrames, text, &wanted);
+    const std::string body = WebMessage(RequestOf<v1::AckFramesRequest>(text).SerializeAsString());
+    const auto response =
+        socket.Ask(absl::StrCat("POST /phrenic.v1.FrameService/AckFrames HTTP/1.1\r\nHost: localhost\r\nContent-Type: "
+                                "application/grpc-web\r\nContent-Length: ",
+                                body.size(), "\r\n\r\n", body));
+    ASSERT_TRUE(response.has_value());
+    const auto frames = WebFrames(response->body());
+    ASSERT_EQ(frames.size(), status.ok() ? 2u : 1u) << text;
+    EXPECT_THAT(frames.back().bytes, testing::StartsWith(absl::StrCat("grpc-status: ", status.error_code(), "\r\n")));
+    if (!status.ok()) continue;
+    ASSERT_TRUE(given.ParseFromString(frames.front().bytes));
+    EXPECT_EQ(given.max_unacked_frames(), wanted.max_unacked_frames());
+    EXPECT_EQ(given.max_error_mm(), wanted.max_error_mm());
+  }
+}
+
 // A client that reads nothing costs the messages that fit into the sockets, and the newest afterwards.
 TEST_F(WebWatchTest, ASlowReaderSkipsFramesDelaysNoOtherAndGetsTheNewest) {
   constexpr int kFrames = 150;
@@ -288,6 +314,24 @@ TEST_F(WebWatchTest, ViewersThatComeAndGoLeaveNothingBehind) {
     for (int i = 0; i < round % 4; ++i) viewers[static_cast<std::size_t>(i)]->Next();
   }
   EXPECT_TRUE(Eventually([&] { return Viewers("cube") == 0; }));
+}
+
+TEST(WatchClaims, AClaimIsGivenItsWatchOnceAndNoneAfterItsEnd) {
+  WatchClaims claims;
+  int given = 0;
+  auto claim = claims.Add([&](const std::shared_ptr<ClaimedWatch>&) { ++given; });
+  const auto other = claims.Add([&](const std::shared_ptr<ClaimedWatch>&) { FAIL(); });
+  EXPECT_NE(claim->key(), other->key());
+  EXPECT_FALSE(claims.Give("", nullptr));
+  EXPECT_TRUE(claims.Has(claim->key()));
+  EXPECT_TRUE(claims.Give(claim->key(), nullptr));
+  EXPECT_FALSE(claims.Give(claim->key(), nullptr));
+  EXPECT_EQ(given, 1);
+  claim = claims.Add([&](const std::shared_ptr<ClaimedWatch>&) { FAIL(); });
+  const std::string key = claim->key();
+  claim = nullptr;
+  EXPECT_FALSE(claims.Has(key));
+  EXPECT_FALSE(claims.Give(key, nullptr));
 }
 
 // A key of a claim is a secret of the gateway: a client's own has no effect.
