@@ -15,7 +15,7 @@ namespace phrenic {
 namespace {
 
 constexpr size_t kMostVertices = 400;  // of a loop that is closed; time grows with the cube
-constexpr double kImpossible = std::numeric_limits<double>::infinity();
+constexpr double kUnclosable = std::numeric_limits<double>::infinity();
 
 using EdgeSet = std::set<std::pair<int, int>>;
 
@@ -69,14 +69,14 @@ class Patch {
       for (int i = 0; i + width < size_; ++i) Choose(i, i + width);
     }
   }
-  bool possible() const { return cost_(0, size_ - 1) < kImpossible; }
+  bool possible() const { return cost_(0, size_ - 1) < kUnclosable; }
   // Adds the triangles, wound along the loop.
   void Add(std::vector<Eigen::Vector3i>& triangles) const { Add(0, size_ - 1, triangles); }
 
  private:
   void Choose(int i, int j) {
     const bool side = i == 0 && j == size_ - 1;
-    cost_(i, j) = kImpossible;
+    cost_(i, j) = kUnclosable;
     if (!side && edges_.contains(Ends(loop_[i], loop_[j]))) return;
     for (int k = i + 1; k < j; ++k) {
       const double cost = cost_(i, k) + cost_(k, j) + Area(i, k, j);

@@ -19,7 +19,8 @@ absl::Status NoSuchField(const Descriptor& type, std::string_view kind, std::str
   names.reserve(type.field_count());
   for (int i = 0; i < type.field_count(); ++i) names.push_back(type.field(i)->name());
   const std::string shown(name.substr(0, kLongestShown));
-  return absl::InvalidArgumentError(absl::StrCat("there is no ", std::string(kind), " \"", shown, "\"", ThereAre(shown, names)));
+  return absl::InvalidArgumentError(
+      absl::StrCat("there is no ", std::string(kind), " \"", shown, "\"", ThereAre(shown, names)));
 }
 
 absl::Status SetToggle(const FieldDescriptor& field, const std::string& value, google::protobuf::Message* message) {
