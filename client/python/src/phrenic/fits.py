@@ -21,7 +21,7 @@ from .errors import FailedPrecondition, InvalidArgument
 from .frame import vectors
 from .jobs import Progress
 from .names import fill, row
-from .operations import Scene, source_of
+from .operations import Scene, check_server, source_of
 from .table import Table
 from .v1 import fit_pb2, geometry_pb2, scene_pb2, session_pb2
 
@@ -154,6 +154,7 @@ def fit(
         from .server import default_server
 
         server = default_server()
+    check_server(server)
     options = {"modes": modes, "split": split, "assimilate": assimilate, "scene_name": scene_name,
                "show_landmarks": show_landmarks}  # fmt: skip
     options |= {"exhale": exhale, "surfaces": surfaces, "lung_surfaces": lung_surfaces, "volume": volume,

@@ -11,10 +11,11 @@ from typing import Any, BinaryIO, Callable, Mapping, Optional, Union
 
 import numpy as np
 
+from .arguments import names_of, path_of, text_of
 from .call import LONG, Call, Operation
 from .errors import DataLoss, FailedPrecondition, InvalidArgument, NotFound, Unavailable
 from .junit import Check, junit
-from .names import fill, is_repeated, nearest, row
+from .names import Named, fill, is_repeated, nearest, row
 from .table import Table
 from .v1 import compare_pb2, export_pb2, physiology_pb2, session_pb2, study_pb2
 
@@ -30,7 +31,7 @@ def export(
     session_id: str, path: Union[str, Path], options: Mapping[str, Any], progress: Progress
 ) -> Operation[dict[str, Any]]:
     """Records a copy of the session to a file, whose ending chooses the format. Returns the summary."""
-    path = Path(path)
+    path = path_of("path", path)
     formats = (yield Call("ExportService.ListFormats", export_pb2.ListFormatsRequest())).formats
     known = {each.name: each for each in formats}
     name = path.suffix[1:]
@@ -231,7 +232,7 @@ def physiology(source: session_pb2.SceneSource, presets: Any, progress: Progress
         elif progress:
             progress(event.progress, "breathing")
 
-    request = study_pb2.CheckPhysiologyRequest(source=source, presets=presets)
+    request = study_pb2.CheckPhysiologyRequest(source=source, presets=names_of("presets", presets))
     yield Call("StudyService.CheckPhysiology", request, LONG, note, repeatable=False)
     curves: dict[str, dict[str, tuple[np.ndarray, np.ndarray]]] = {}
     for curve in tables[-1].curves:
@@ -259,7 +260,7 @@ class Comparison:
 
     def __getitem__(self, name: str) -> float:
         """Returns a distance of the whole surfaces, such as ["hd95_max"]."""
-        return self.rows[0][name]
+        return Named(self.rows[0], "distance")[name]
 
 
 def comparison(
@@ -288,12 +289,12 @@ def compare(a: compare_pb2.ComparedSurface, b: compare_pb2.ComparedSurface, opti
 
 def body_of(session_id: str, body: str) -> compare_pb2.ComparedSurface:
     """A body of a session, as it is now; empty: the deformable body with the most triangles."""
-    return compare_pb2.ComparedSurface(body=compare_pb2.SessionBody(session_id=session_id, body=body))
+    return compare_pb2.ComparedSurface(body=compare_pb2.SessionBody(session_id=session_id, body=text_of("body", body)))
 
 
 def file_of(path: Union[str, Path], options: Mapping[str, Any]) -> compare_pb2.ComparedSurface:
     """A surface or motion file."""
-    path = Path(path)
+    path = path_of("other", path)
     try:
         return fill(compare_pb2.ComparedSurface(name=path.name, content=path.read_bytes()), options)
     except OSError as error:

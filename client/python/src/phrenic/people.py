@@ -14,7 +14,7 @@ from .call import LONG, Call, Operation
 from .errors import InvalidArgument
 from .fits import Landmarks, landmark_files
 from .jobs import Progress
-from .operations import Scene, source_of
+from .operations import Scene, check_server, source_of
 from .table import Table
 from .v1 import fit_pb2, session_pb2
 
@@ -56,6 +56,7 @@ def study(
         from .server import default_server
 
         server = default_server()
+    check_server(server)
     return server.connection.run(studied(source_of(scene, resolution_mm), cases, modes, split, progress))
 
 
