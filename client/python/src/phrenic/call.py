@@ -70,20 +70,20 @@ class Call:
         return [("x-session-id", session)] if session and session.isascii() and session.isprintable() else []
 
 
-RETRIES = 80
+RETRIES = 160
 """Repeats of a call while the server is unavailable, which take about a minute, as long as the command line waits."""
-FIRST = 5
+FIRST = 6
 """Repeats of the first call of a connection, about 2 s: an address where no server runs is told soon."""
 
 
 def delay_before_repeat(call: Call, error: Error, attempt: int, retries: int) -> Optional[float]:
     """Returns how long to wait before the call is repeated [s], or None if the error is final: only UNAVAILABLE is
-    repeated, and what the call names as passing, after 0.1, 0.2, 0.4 ... s with jitter, at most 1 s. It is the rule of
+    repeated, and what the call names as passing, after 0.1, 0.2, 0.4 ... s with jitter, at most 0.5 s. It is the rule of
     all calls, batches too."""
     most = retries if call.repeats is None else min(call.repeats, retries)
     if not isinstance(error, (Unavailable, *call.passing)) or not call.repeatable or attempt >= most:
         return None
-    return min(1.0, 0.1 * 2 ** min(attempt, 10)) * random.uniform(0.5, 1)
+    return min(0.5, 0.1 * 2 ** min(attempt, 10)) * random.uniform(0.5, 1)
 
 
 def one(call: Call) -> Operation[Any]:

@@ -11,11 +11,12 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Iterable, Mapping, Optional, Sequence, Union
 
 import numpy as np
 from google.protobuf import text_format
 
+from .arguments import path_of
 from .call import LONG, Call, Operation
 from .errors import FailedPrecondition, InvalidArgument
 from .frame import vectors
@@ -208,7 +209,10 @@ def _measured(
 def _listed(paths: Any) -> list[Any]:
     if paths is None:
         return []
-    return [paths] if isinstance(paths, (str, Path)) else list(paths)
+    each = [paths] if isinstance(paths, (str, Path)) else paths
+    if not isinstance(each, Iterable):
+        raise InvalidArgument(f"{paths!r} is neither a file nor a list of files")
+    return [path_of("files", path) for path in each]
 
 
 def _suffix(text: str) -> tuple[str, str]:
@@ -244,8 +248,7 @@ def landmark_files(landmarks: Landmarks) -> list[fit_pb2.LandmarkFile]:
             raise InvalidArgument(f"landmarks: an array of shape {landmarks.shape} is not (n, 6): {COLUMNS} in mm")
         lines = (",".join(repr(float(number)) for number in row) for row in landmarks)
         return [fit_pb2.LandmarkFile(name="landmarks", content="\n".join((COLUMNS, *lines)).encode())]
-    paths = [landmarks] if isinstance(landmarks, (str, Path)) else landmarks
-    return [_file(Path(path)) for path in paths]
+    return [_file(path) for path in _listed(landmarks)]
 
 
 def _file(path: Path) -> fit_pb2.LandmarkFile:

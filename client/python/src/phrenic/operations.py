@@ -19,7 +19,7 @@ from .call import LONG, Call, Operation, T
 from .codec import Decoder
 from .errors import Aborted, AlreadyExists, Cancelled, Closed, DeadlineExceeded, Error, InvalidArgument, NotFound, Unavailable
 from .frame import Frame, Geometry, frame_of, watched_frame
-from .names import Named, enum_number, fill, look_up, row
+from .names import Named, enum_names, enum_number, fill, look_up, nearest, row
 from .table import Table
 from .v1 import frames_pb2, parameters_pb2, samples_pb2, scene_pb2, session_pb2, state_pb2
 
@@ -64,6 +64,10 @@ def parts_of(read: Sequence[str]) -> tuple[int, ...]:
 
 @lru_cache
 def _parts_of(read: tuple[str, ...]) -> tuple[int, ...]:
+    known = enum_names(state_pb2.StatePart.DESCRIPTOR)
+    for part in read:
+        if part not in known:
+            raise InvalidArgument(f"read: there is no part {part}: {nearest(part, known)}")
     return tuple(enum_number(state_pb2.StatePart.DESCRIPTOR, part) for part in read)
 
 

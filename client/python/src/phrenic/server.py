@@ -8,6 +8,7 @@ import threading
 from pathlib import Path
 from typing import Any, Optional, Sequence, Union
 
+from .arguments import names_of
 from .call import FIRST, RETRIES, Call, one
 from .connection import Channel, Connection, Tls, target_of
 from .local import Process, binary
@@ -135,7 +136,7 @@ def local(
     ...     "thorax" in server.scenes()["name"]
     True
     """
-    return LocalServer(Process(binary(program), flags, data))
+    return LocalServer(Process(binary(program), names_of("flags", flags), data))
 
 
 _default: Optional[Server] = None
