@@ -63,7 +63,12 @@ class Process:
     @property
     def runs(self) -> bool:
         """True until the server has ended. Requires: this process started it."""
-        return self._process is not None and self._process.poll() is None
+        if self._process is None or self._process.returncode is not None:
+            return False
+        try:  # not poll(), which waits for the thread that waits
+            return os.waitid(os.P_PID, self._process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None
+        except ChildProcessError:
+            return False
 
     def stop(self) -> None:
         """Ends the server and removes its folder. A second call has no effect, nor has one by a forked process."""

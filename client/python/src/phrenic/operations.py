@@ -147,9 +147,8 @@ class SessionOperations:
 
     def _leave_stream(self) -> None:
         """Ends a stream of steps whose loop was left while answers were pending."""
-        stream, self._stream = self._stream, None
-        if stream is not None:
-            stream.leave()
+        if self._stream is not None and self._stream.pending:
+            self._stream.leave()
 
     # --- reading ---
     def _describe(self, parts: Iterable[int]) -> Operation[None]:
