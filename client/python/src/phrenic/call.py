@@ -4,6 +4,8 @@ the async client share every line but the one that waits."""
 from __future__ import annotations
 
 import random
+import re
+import uuid
 from dataclasses import dataclass
 from typing import Any, Callable, Generator, Optional, TypeVar
 
@@ -84,6 +86,16 @@ def delay_before_repeat(call: Call, error: Error, attempt: int, retries: int) ->
     if not isinstance(error, (Unavailable, *call.passing)) or not call.repeatable or attempt >= most:
         return None
     return min(0.5, 0.1 * 2 ** min(attempt, 10)) * random.uniform(0.5, 1)
+
+
+def new_id(stem: str) -> str:
+    """Returns an id that nothing else on a server has, by which a repeated call makes it once: `stem` and 48 random bits.
+
+    >>> len(new_id("thorax")), new_id("My scene")[:9]
+    (19, 'my-scene-')
+    """
+    name = re.sub(r"[^a-z0-9]+", "-", stem.lower()).strip("-")[:40].strip("-")
+    return f"{name or 'new'}-{uuid.uuid4().hex[:12]}"
 
 
 def one(call: Call) -> Operation[Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ipaddress
 import os
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Iterator, Optional, TypeVar, Union
 
@@ -36,7 +36,7 @@ class Target:
     host: str
     """HOST:PORT."""
     tls: Optional[Tls]
-    metadata: tuple[tuple[str, str], ...]
+    metadata: tuple[tuple[str, str], ...] = field(repr=False)
     timeout: float
     """Deadline of a call that does not compute [s]."""
     retries: int

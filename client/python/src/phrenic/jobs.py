@@ -12,8 +12,8 @@ from typing import Any, BinaryIO, Callable, Mapping, Optional, Union
 import numpy as np
 
 from .arguments import names_of, path_of, text_of
-from .call import LONG, Call, Operation
-from .errors import DataLoss, FailedPrecondition, InvalidArgument, NotFound, Unavailable
+from .call import FIRST, LONG, Call, Operation, new_id
+from .errors import AlreadyExists, Closed, DataLoss, FailedPrecondition, InvalidArgument, NotFound, Unavailable
 from .junit import Check, junit
 from .names import Named, fill, is_repeated, nearest, row
 from .table import Table
@@ -37,13 +37,30 @@ def export(
     name = path.suffix[1:]
     if name not in known:
         raise InvalidArgument(f"{path}: there is no format {name!r}: {nearest(name, known)}")
-    request = export_pb2.CreateExportRequest(session_id=session_id, format=name, file_stem=path.stem)
-    job = (yield Call("ExportService.CreateExport", fill(request, options), LONG, repeatable=False)).job
+    id = new_id("export")
+    request = export_pb2.CreateExportRequest(export_id=id, session_id=session_id, format=name, file_stem=path.stem)
+    yield from _begun(Call("ExportService.CreateExport", fill(request, options), LONG))
     try:
-        summary = yield from _export_done(job.id, progress)
-        return (yield from _download(job.id, path, summary, known[name].ending == "zip"))
+        summary = yield from _export_done(id, progress)
+        return (yield from _download(id, path, summary, known[name].ending == "zip"))
     finally:
-        yield Call("ExportService.DeleteExport", export_pb2.DeleteExportRequest(export_id=job.id))
+        yield from _dropped(Call("ExportService.DeleteExport", export_pb2.DeleteExportRequest(export_id=id), repeats=FIRST))
+
+
+def _begun(call: Call) -> Operation[None]:
+    """Begins a job with an id of this client's choice, once, however often the call is repeated."""
+    try:
+        yield call
+    except AlreadyExists:  # by a call whose answer was lost: no other client has the id
+        pass
+
+
+def _dropped(call: Call) -> Operation[None]:
+    """Deletes a job, which may have ended with its server."""
+    try:
+        yield call
+    except (NotFound, Unavailable, Closed):
+        pass
 
 
 def _export_done(id: str, progress: Progress) -> Operation[export_pb2.ExportSummary]:
@@ -138,9 +155,10 @@ def study(
     kind: str, source: session_pb2.SceneSource, parameters: Any, options: Mapping[str, Any], progress: Progress
 ) -> Operation[Study]:
     """Runs a study on the server and deletes it there."""
-    request = study_pb2.CreateStudyRequest(source=source, parameters=parameters)
+    id = new_id("study")
+    request = study_pb2.CreateStudyRequest(study_id=id, source=source, parameters=parameters)
     getattr(request, kind).CopyFrom(fill(STUDIES[kind](), options))
-    id = (yield Call("StudyService.CreateStudy", request, LONG, repeatable=False)).study.id
+    yield from _begun(Call("StudyService.CreateStudy", request, LONG))
     try:
         seen: list[study_pb2.Study] = []
 
@@ -154,7 +172,7 @@ def study(
             raise FailedPrecondition((seen and seen[0].problem) or "the study has not ended")
         return study_of(seen[0].result, (yield from _page(id)))
     finally:
-        yield Call("StudyService.DeleteStudy", study_pb2.DeleteStudyRequest(study_id=id))
+        yield from _dropped(Call("StudyService.DeleteStudy", study_pb2.DeleteStudyRequest(study_id=id), repeats=FIRST))
 
 
 def _page(id: str) -> Operation[str]:
@@ -233,7 +251,7 @@ def physiology(source: session_pb2.SceneSource, presets: Any, progress: Progress
             progress(event.progress, "breathing")
 
     request = study_pb2.CheckPhysiologyRequest(source=source, presets=names_of("presets", presets))
-    yield Call("StudyService.CheckPhysiology", request, LONG, note, repeatable=False)
+    yield Call("StudyService.CheckPhysiology", request, LONG, note)
     curves: dict[str, dict[str, tuple[np.ndarray, np.ndarray]]] = {}
     for curve in tables[-1].curves:
         curves.setdefault(curve.breath, {})[curve.what] = (np.array(curve.time_s), np.array(curve.values))
@@ -282,7 +300,7 @@ def compare(a: compare_pb2.ComparedSurface, b: compare_pb2.ComparedSurface, opti
             tables.append(event.table)
 
     request = fill(compare_pb2.CompareRequest(a=a, b=b), options)
-    yield Call("CompareService.Compare", request, LONG, note, repeatable=False)
+    yield Call("CompareService.Compare", request, LONG, note)
     rows = ({**row(each), **row(each.distance)} for each in tables[-1].rows)
     return Comparison(Table(rows), tables[-1].definition, list(tables[-1].warnings))
 

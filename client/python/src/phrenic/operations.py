@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import re
 import uuid
 import warnings
 from functools import lru_cache
@@ -15,7 +14,7 @@ import numpy as np
 from google.protobuf import text_format
 
 from .arguments import INT32, finite, mapping, names_of, positive, text_of, vector, whole
-from .call import LONG, Call, Operation, T
+from .call import LONG, Call, Operation, T, new_id
 from .codec import Decoder
 from .errors import Aborted, AlreadyExists, Cancelled, Closed, DeadlineExceeded, Error, InvalidArgument, NotFound, Unavailable
 from .frame import Frame, Geometry, frame_of, watched_frame
@@ -156,7 +155,7 @@ class SessionOperations:
         if self._geometry is None and state_pb2.STATE_PART_BODIES in parts:
             bodies: list[frames_pb2.GetGeometryResponse] = []
             request = frames_pb2.GetGeometryRequest(session_id=self.id)
-            yield Call("FrameService.GetGeometry", request, LONG, bodies.append, repeatable=False)
+            yield Call("FrameService.GetGeometry", request, LONG, bodies.append)
             self._geometry = Geometry(bodies)
         if self._layout is None and any(part != state_pb2.STATE_PART_BODIES for part in parts):
             answer = yield Call("SessionService.GetState", self._state_request([state_pb2.STATE_PART_LAYOUT]))
@@ -320,7 +319,7 @@ class SessionOperations:
 
     def _fork(self, fork_id: str) -> Operation[session_pb2.ForkSessionResponse]:
         """Forks. A fork of this client's choice of id is made once, however often the call is repeated."""
-        request = session_pb2.ForkSessionRequest(session_id=self.id, fork_id=text_of("id", fork_id) or _new_id(self.scene))
+        request = session_pb2.ForkSessionRequest(session_id=self.id, fork_id=text_of("id", fork_id) or new_id(self.scene))
         try:
             return (yield Call("SessionService.ForkSession", request, LONG))
         except AlreadyExists:
@@ -380,7 +379,7 @@ def create(
     """Creates a session. Without `id`, this client chooses one, so that a repeat after a lost connection makes no second
     session; with one, a repeat that finds the session made is AlreadyExists."""
     request = session_pb2.CreateSessionRequest(
-        session_id=text_of("id", id) or _new_id(getattr(scene, "name", scene)),
+        session_id=text_of("id", id) or new_id(Path(str(getattr(scene, "name", scene))).stem),
         source=source_of(scene, resolution_mm),
         parameters=parameters_of(set),
         preset=text_of("preset", preset),
@@ -391,12 +390,6 @@ def create(
         if id:
             raise
         return session_pb2.CreateSessionResponse(session=(yield from _made_before(request.session_id)))
-
-
-def _new_id(stem: Any) -> str:
-    """Returns an id that no other session has: the scene's name and 48 random bits."""
-    name = re.sub(r"[^a-z0-9]+", "-", Path(str(stem)).stem.lower()).strip("-")[:40]
-    return f"{name or 'session'}-{uuid.uuid4().hex[:12]}"
 
 
 def _made_before(id: str) -> Operation[session_pb2.Session]:

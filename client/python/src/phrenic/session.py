@@ -47,7 +47,7 @@ class Session(SessionOperations):
         server: Optional["Server"] = None,
     ) -> None:
         """`scene`: a name of the catalogue, a .textproto file or a Scene. `set`: live parameters by name. `id`: empty
-        for one of the server's choice."""
+        for a new one."""
         if server is None:
             from .server import default_server
 
