@@ -77,6 +77,20 @@ class ArgumentsTest(SessionTest):
         self.refused("parameters", lambda: phrenic.batch("cube-springs", 3, seconds=1))
         self.refused("runs[0]", lambda: phrenic.batch("cube-springs", [{}], seconds=1, start=3))
 
+    def test_results_and_files_name_the_argument(self):
+        frames, lungs = list(self.session().play(0.1, fps=20)), self.session("thorax", resolution_mm=12)
+        for points in ([1], [(1, 2)], "abc"):
+            self.refused("points", lambda points=points: lungs.tissue(points))
+        self.refused("path", lambda: lungs.export("/no/folder/x.msh"))
+        self.refused("tls", lambda: phrenic.connect("https://127.0.0.1:1", tls=3))
+        self.refused("cases", lambda: phrenic.people.study(3))
+        self.refused("errors", lambda: phrenic.fit(np.zeros((20, 6)), errors=3))
+        self.refused("frames", lambda: phrenic.motion.Motion.of(3))
+        self.refused("frames", lambda: phrenic.motion.Motion.of([3]))
+        self.refused("finished", lambda: phrenic.batch("cube-springs", [{}], seconds=1, finished=3))
+        self.refused("seed", lambda: phrenic.gym.VentilateCopd().reset(seed=-1))
+        self.refused("path", lambda: phrenic.motion.to_netcdf(frames, "/no/folder/x.nc"))
+
     def test_a_frame_is_a_start(self):
         frame = self.session().step(5)
         (a,), (b,) = (list(phrenic.batch("cube-springs", [{}], seconds=0.1, **start))

@@ -16,6 +16,8 @@ import operator
 from pathlib import Path
 from typing import Any, Mapping, Sequence
 
+import numpy as np
+
 from .errors import InvalidArgument
 
 INT32 = 2**31 - 1
@@ -57,9 +59,13 @@ def positive(name: str, value: Any) -> float:
 
 
 def text_of(name: str, value: Any) -> str:
-    """Returns a text."""
+    """Returns a text that a message can have."""
     if not isinstance(value, str):
         raise InvalidArgument(f"{name}: {_shown(value)} is not a text: give a str")
+    try:
+        value.encode("utf-8")
+    except UnicodeEncodeError as error:
+        raise InvalidArgument(f"{name}: {_shown(value)} cannot be written in UTF-8: {error.reason}") from None
     return value
 
 
@@ -98,6 +104,27 @@ def path_of(name: str, value: Any) -> Path:
     if not isinstance(value, (str, Path)):
         raise InvalidArgument(f"{name}: {_shown(value)} is not the path of a file: give a str or Path")
     return Path(value)
+
+
+def new_file(name: str, value: Any) -> Path:
+    """Returns the path of a file that is to be written, in a folder that is there."""
+    path = path_of(name, value)
+    if not path.parent.is_dir():
+        raise InvalidArgument(f"{name}: there is no folder {path.parent}: make it first")
+    return path
+
+
+def rows_of(name: str, value: Any, width: int) -> np.ndarray:
+    """Returns rows of `width` numbers, as an array of float64."""
+    try:
+        rows = np.asarray(value, float)
+    except (TypeError, ValueError):
+        rows = np.zeros(0)
+    if rows.size == 0 and value is not None and np.size(value) == 0:
+        return np.zeros((0, width))
+    if rows.ndim != 2 or rows.shape[1] != width:
+        raise InvalidArgument(f"{name}: {_shown(value)} is not a list of rows of {width} numbers")
+    return rows
 
 
 def _shown(value: Any) -> str:

@@ -12,7 +12,7 @@ from typing import Any, Iterator, Optional, TypeVar, Union
 import grpc
 
 from .call import RETRIES, SERVICES, Call, Operation, delay_before_repeat
-from .arguments import positive, text_of, whole
+from .arguments import path_of, positive, text_of, whole
 from .errors import Closed, FailedPrecondition, InvalidArgument, error_of
 
 T = TypeVar("T")
@@ -111,7 +111,7 @@ def credentials_of(tls: Tls) -> grpc.ChannelCredentials:
 
     def read(path: Union[str, Path, None]) -> Optional[bytes]:
         try:
-            return Path(path).read_bytes() if path else None
+            return path_of("tls", path).read_bytes() if path else None
         except OSError as error:
             raise InvalidArgument(f"tls: {path} cannot be read: {error.strerror}") from None
 

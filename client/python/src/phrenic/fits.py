@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Iterable, Mapping, Optional, Sequence, Un
 import numpy as np
 from google.protobuf import text_format
 
-from .arguments import path_of
+from .arguments import finite, mapping, path_of
 from .call import LONG, Call, Operation
 from .errors import FailedPrecondition, InvalidArgument
 from .frame import vectors
@@ -168,7 +168,7 @@ def fitted(
 ) -> Operation[Fit]:
     """Fits, and returns the result. `options`: those of `fit`."""
     given = {kind: options.get(name) for name, kind in OPTIONS.items()}
-    measured = _measured(landmarks, given, options.get("errors") or {})
+    measured = _measured(landmarks, given, mapping("errors", options.get("errors")))
     files = [] if landmarks is None or measured else landmark_files(landmarks)
     fields = {name: value for name, value in options.items() if name not in OPTIONS and name != "errors"}
     request = fill(fit_pb2.FitMotionRequest(source=source, landmarks=files, measured=measured), fields)
@@ -202,7 +202,7 @@ def _measured(
         content = landmark_files(landmarks)[0].content
         files.append(fit_pb2.MeasuredFile(kind=KINDS["landmarks"], name="landmarks", content=content))
         if "landmarks" in errors:
-            files[-1].error = errors["landmarks"]
+            files[-1].error = finite("errors: landmarks", errors["landmarks"])
     return files + [_measured_file("landmarks", path, errors) for path in pairs]
 
 
@@ -231,7 +231,7 @@ def _measured_file(kind: str, text: str, errors: Mapping[str, float]) -> fit_pb2
     except OSError as error:
         raise InvalidArgument(f"{path}: {error.strerror}") from None
     if kind in errors:
-        file.error = errors[kind]
+        file.error = finite(f"errors: {kind}", errors[kind])
     if suffix in ("right", "left"):
         file.side = geometry_pb2.SIDE_LEFT if suffix == "left" else geometry_pb2.SIDE_RIGHT
     elif suffix in ("inhale", "exhale"):

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional
 
 import numpy as np
 
-from .arguments import mapping, positive
+from .arguments import mapping, positive, whole
 from .errors import FailedPrecondition, InvalidArgument, OutOfRange
 from .operations import Scene, SimulationWarning
 from .session import Session
@@ -70,7 +70,7 @@ class BreathingEnv(Env):
         self, *, seed: Optional[int] = None, options: Optional[Mapping[str, Any]] = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Begins an episode. `options`: live parameters of the patient, such as {"airway_resistance": 5}."""
-        super().reset(seed=seed)
+        super().reset(seed=None if seed is None else whole("seed", seed))
         self.close()
         self._episode = Episode.begin(self.task, self.np_random, self._cost)
         self._session = Session(

@@ -11,7 +11,7 @@ from typing import Any, BinaryIO, Callable, Mapping, Optional, Union
 
 import numpy as np
 
-from .arguments import names_of, path_of, text_of
+from .arguments import names_of, new_file, path_of, text_of
 from .call import FIRST, LONG, Call, Operation, new_id
 from .errors import AlreadyExists, Closed, DataLoss, FailedPrecondition, InvalidArgument, NotFound, Unavailable
 from .junit import Check, junit
@@ -31,7 +31,7 @@ def export(
     session_id: str, path: Union[str, Path], options: Mapping[str, Any], progress: Progress
 ) -> Operation[dict[str, Any]]:
     """Records a copy of the session to a file, whose ending chooses the format. Returns the summary."""
-    path = path_of("path", path)
+    path = new_file("path", path)
     formats = (yield Call("ExportService.ListFormats", export_pb2.ListFormatsRequest())).formats
     known = {each.name: each for each in formats}
     name = path.suffix[1:]

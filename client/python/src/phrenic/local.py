@@ -109,7 +109,7 @@ class Process:
             time.sleep(0.005)
         text = self.log.read_text(errors="replace").strip()
         self.stop()
-        raise NotStarted(f"phrenicd did not start: {text}")
+        raise NotStarted(f"phrenicd did not start: {text or 'it ended without a word; is it the right program?'}")
 
 
 def notebook_origins() -> list[str]:

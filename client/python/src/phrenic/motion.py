@@ -19,7 +19,7 @@ from typing import Any, Iterable, Optional, Sequence, Union
 
 import numpy as np
 
-from .arguments import path_of
+from .arguments import new_file
 from .errors import InvalidArgument
 from .frame import Frame
 from .optional import need
@@ -52,7 +52,9 @@ class Motion:
     def of(cls, frames: Iterable[Frame], bodies: Optional[Sequence[str]] = None, **attributes: Any) -> "Motion":
         """Returns the motion of these frames. `bodies`: names; default: all that the frames have. `attributes`: noted as
         they are, such as scene=session.scene. InvalidArgument if there is no frame."""
-        frames = list(frames)
+        frames = list(frames) if isinstance(frames, Iterable) else [frames]
+        if not all(isinstance(frame, Frame) for frame in frames):
+            raise InvalidArgument("frames: give frames of Session.play(), or a list of them")
         if not frames:
             raise InvalidArgument("frames: a motion needs one at least")
         names = frames[0].bodies if bodies is None else list(bodies)
@@ -83,7 +85,7 @@ class Motion:
         """Writes a NetCDF 3 file, which xarray.open_dataset reads; text is UTF-8. A file that is there is replaced once the
         new one is whole. Requires: scipy is installed; xarray is not needed."""
         scipy_io = need("scipy.io", "to_netcdf", "apt install python3-scipy, or pip install scipy")
-        target = path_of("path", path)
+        target = new_file("path", path)
         part = target.with_name(target.name + ".part")
         try:
             with scipy_io.netcdf_file(str(part), "w", version=2) as file:

@@ -179,6 +179,8 @@ def parts(
     while True:
         block, size = [], 0
         del request.runs[:], request.finished[:]
+        if not isinstance(finished, Container):
+            raise InvalidArgument(f"finished: {finished!r} has no indices of runs: give a set")
         for each, state in values:
             index = begin + len(block)
             try:

@@ -249,9 +249,9 @@ class Session(SessionOperations):
         progress: jobs.Progress = None,
         **options: Any,
     ) -> dict[str, Any]:
-        """Records a copy of the session, without changes that wait for their tick, from now on, `seconds` long, to a file: .msh, .depl, .pvd, .glb, .csv, or
-        .html, a page that plays one breath if `seconds` is 0. The session itself does not move. `options`: those of
-        CreateExportRequest, such as steps_per_frame. Returns the summary: frames, vertices, state_hash at the end ..."""
+        """Records a copy of the session from now on, `seconds` long, to a file: .msh, .depl, .pvd, .glb, .csv, or
+        .html, a page that plays one breath if `seconds` is 0. The session itself does not move, and changes that wait for
+        their tick are left out. `options`: those of CreateExportRequest, such as steps_per_frame. Returns the summary: frames, vertices, state_hash at the end ..."""
         fields = {"seconds": seconds, "frames_per_second": fps, "bodies": bodies, **options}
         return self._do(jobs.export(self.id, path, fields, progress))
 
