@@ -125,6 +125,8 @@ class ArgumentsTest(SessionTest):
             with self.assertRaisesRegex(Closed, f"session {s.id} is closed"):
                 call()
         s.close()
+        with self.assertRaisesRegex(Closed, "is closed"):
+            steps.send()
         steps.close()
         server = phrenic.connect(phrenic.default_server().address)
         s = phrenic.Session("cube-springs", server=server)

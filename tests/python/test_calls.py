@@ -1,5 +1,6 @@
 """What goes over the wire: metadata, repeats, errors. The server is a fake whose answers the test chooses."""
 
+import contextlib
 import subprocess
 import sys
 import time
@@ -8,8 +9,9 @@ import unittest
 import grpc
 
 import phrenic
-from phrenic import call, errors
+from phrenic import call, errors, jobs
 from phrenic.connection import Channel, target_of
+from phrenic.operations import create
 from phrenic.v1 import session_pb2, state_pb2
 from support import FakeServer, failing
 
@@ -66,6 +68,15 @@ class CallsTest(unittest.TestCase):
         with self.assertRaises(errors.AlreadyExists):  # which of the callers made it is not known
             phrenic.Session("any", id="mine", server=self.server)
 
+    def test_a_session_whose_creation_was_cut_off_is_deleted(self):
+        operation = create("any", None, "", "", None)
+        made = next(operation)
+        deleted = operation.throw(KeyboardInterrupt())
+        self.assertEqual(deleted.method, "SessionService.DeleteSession")
+        self.assertEqual(deleted.request.session_id, made.request.session_id)
+        with self.assertRaises(KeyboardInterrupt):
+            operation.throw(errors.NotFound("it was not made"))
+
     def test_a_fork_is_made_once_however_often_the_call_is_repeated(self):
         session = phrenic.Session("any", server=self.server)
         then = session_pb2.ForkSessionResponse(session={"id": "x"}, control_token="key")
@@ -74,6 +85,29 @@ class CallsTest(unittest.TestCase):
         ids = [request.fork_id for request in self.fake.made("ForkSession")]
         self.assertEqual(ids, ids[:1] * 3)
         self.assertTrue(ids[0])
+
+    def test_a_job_is_begun_once_however_often_the_call_is_repeated(self):
+        ids = []
+
+        def answer(sent):  # the server has begun it, and the first answer is lost
+            ids.append(sent.request.study_id)
+            raise errors.Unavailable("") if len(ids) == 1 else errors.AlreadyExists("")
+
+        operation = jobs.study("cost", session_pb2.SceneSource(), None, {}, None)
+        sent = next(operation)
+        self.assertTrue(sent.repeatable)
+        for _ in range(2):
+            try:
+                answer(sent)
+            except errors.Error as error:
+                failed = error
+        watch = operation.throw(failed)
+        self.assertEqual(watch.method, "StudyService.WatchStudy")
+        self.assertEqual([watch.request.study_id] * 2, ids)
+        deleted = operation.throw(errors.Unavailable("lost"))
+        self.assertEqual((deleted.method, deleted.repeats), ("StudyService.DeleteStudy", call.FIRST))
+        with self.assertRaisesRegex(errors.Unavailable, "lost"):
+            operation.throw(errors.NotFound("a restarted server has no such study"))
 
     def test_a_fork_that_cannot_be_changed_is_deleted(self):
         session = phrenic.Session("any", server=self.server)
@@ -90,9 +124,11 @@ class CallsTest(unittest.TestCase):
         first = call.Call("any", session_pb2.GetSessionRequest(), repeats=call.FIRST)
         for each, least, most in ((change, 35, 85), (first, 0.5, 3)):
             waits, attempt = [], 0
-            while (wait := call.delay_before_repeat(each, lost, attempt, call.RETRIES)) is not None:
-                waits.append(wait)
-                attempt += 1
+            told = self.assertLogs("phrenic", "WARNING") if each is change else contextlib.nullcontext()
+            with told:
+                while (wait := call.delay_before_repeat(each, lost, attempt, call.RETRIES)) is not None:
+                    waits.append(wait)
+                    attempt += 1
             self.assertTrue(least < sum(waits) < most, sum(waits))
         for defaults in (phrenic.connect.__kwdefaults__, phrenic.aio.connect.__kwdefaults__):
             self.assertEqual(defaults["retries"], call.RETRIES)

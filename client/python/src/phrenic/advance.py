@@ -49,6 +49,7 @@ class Requests:
         return len(self._pending)
 
     def _request(self, ticks: int, parameters: dict[str, Any]) -> session_pb2.AdvanceRequest:
+        self._session._check_open()
         ticks = whole("ticks", ticks)
         if not self._pending:  # other calls may have stepped
             self._tick = self._session.tick

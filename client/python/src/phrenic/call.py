@@ -3,6 +3,7 @@ the async client share every line but the one that waits."""
 
 from __future__ import annotations
 
+import logging
 import random
 import re
 import uuid
@@ -81,10 +82,12 @@ FIRST = 6
 def delay_before_repeat(call: Call, error: Error, attempt: int, retries: int) -> Optional[float]:
     """Returns how long to wait before the call is repeated [s], or None if the error is final: only UNAVAILABLE is
     repeated, and what the call names as passing, after 0.1, 0.2, 0.4 ... s with jitter, at most 0.5 s. It is the rule of
-    all calls, batches too."""
+    all calls, batches too. The logger "phrenic" warns once, after about 1 s."""
     most = retries if call.repeats is None else min(call.repeats, retries)
     if not isinstance(error, (Unavailable, *call.passing)) or not call.repeatable or attempt >= most:
         return None
+    if attempt == 4 and most > FIRST:
+        logging.getLogger("phrenic").warning("%s; repeating %s up to %d times", error.message, call.method, most)
     return min(0.5, 0.1 * 2 ** min(attempt, 10)) * random.uniform(0.5, 1)
 
 

@@ -390,6 +390,10 @@ def create(
         if id:
             raise
         return session_pb2.CreateSessionResponse(session=(yield from _made_before(request.session_id)))
+    except BaseException as failed:
+        if not id and (isinstance(failed, DeadlineExceeded) or not isinstance(failed, Error)):  # Ctrl-C: it may be made
+            yield from _unmade(request.session_id)
+        raise
 
 
 def _made_before(id: str) -> Operation[session_pb2.Session]:
@@ -397,6 +401,14 @@ def _made_before(id: str) -> Operation[session_pb2.Session]:
     token is lost; everybody may change a session that is not under control, as this one is."""
     request = session_pb2.GetSessionRequest(session_id=id)
     return (yield Call("SessionService.GetSession", request, passing=(NotFound,))).session
+
+
+def _unmade(id: str) -> Operation[None]:
+    """Deletes the session that a call made which was cut off, if it did."""
+    try:
+        yield Call("SessionService.DeleteSession", session_pb2.DeleteSessionRequest(session_id=id), repeatable=False)
+    except Error:
+        pass
 
 
 def describe(scene: Scene, resolution_mm: Optional[float]) -> Operation[session_pb2.DescribeSceneResponse]:
