@@ -62,13 +62,14 @@ class Process:
 
     @property
     def runs(self) -> bool:
-        """True until the server has ended. Requires: this process started it."""
+        """True until the server has ended, or is ending. Requires: this process started it."""
         if self._process is None or self._process.returncode is not None:
             return False
-        try:  # not poll(), which waits for the thread that waits
-            return os.waitid(os.P_PID, self._process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None
-        except ChildProcessError:
+        try:  # not poll(), which is late: it leaves the end to the thread that waits, and until every thread has ended
+            status = Path(f"/proc/{self._process.pid}/stat").read_text()
+        except OSError:
             return False
+        return status.rpartition(")")[2].split()[0] not in "ZX"
 
     def stop(self) -> None:
         """Ends the server and removes its folder. A second call has no effect, nor has one by a forked process."""
