@@ -65,6 +65,14 @@ class FakeServer(server_pb2_grpc.ServerServiceServicer, session_pb2_grpc.Session
         answer = session_pb2.CreateSessionResponse(session={"id": "fake"}, control_token="key")
         return self._answer("CreateSession", request, context, answer)
 
+    def ForkSession(self, request, context):  # noqa: N802
+        answer = session_pb2.ForkSessionResponse(session={"id": request.fork_id}, control_token="key")
+        return self._answer("ForkSession", request, context, answer)
+
+    def PauseSession(self, request, context):  # noqa: N802
+        answer = session_pb2.PauseSessionResponse(session={"id": request.session_id})
+        return self._answer("PauseSession", request, context, answer)
+
     def StepSession(self, request, context):  # noqa: N802
         return self._answer("StepSession", request, context, session_pb2.StepSessionResponse())
 

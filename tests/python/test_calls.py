@@ -1,5 +1,6 @@
 """What goes over the wire: metadata, repeats, errors. The server is a fake whose answers the test chooses."""
 
+import contextlib
 import subprocess
 import sys
 import time
@@ -8,8 +9,9 @@ import unittest
 import grpc
 
 import phrenic
-from phrenic import errors
+from phrenic import call, errors, jobs
 from phrenic.connection import Channel, target_of
+from phrenic.operations import create
 from phrenic.v1 import session_pb2, state_pb2
 from support import FakeServer, failing
 
@@ -46,6 +48,101 @@ class CallsTest(unittest.TestCase):
         ids = {request.request_id for request in self.fake.made("UpdateParameters")}
         self.assertEqual((len(self.fake.made("UpdateParameters")), len(ids)), (3, 1))
         self.assertTrue(all(ids))
+
+    def test_a_session_is_made_once_however_often_the_call_is_repeated(self):
+        exists, missing = grpc.StatusCode.ALREADY_EXISTS, grpc.StatusCode.NOT_FOUND
+        made = lambda request: session_pb2.GetSessionResponse(session={"id": request.session_id, "tick": 5})  # noqa: E731
+
+        def create(request, context):  # the first answer is lost, and the session is there
+            context.abort(UNAVAILABLE if len(self.fake.made("CreateSession")) == 1 else exists, "")
+
+        self.fake.answers["CreateSession"] = create
+        self.fake.answers["GetSession"] = lambda request, context: (
+            made(request) if len(self.fake.made("GetSession")) > 1 else context.abort(missing, "it is being compiled")
+        )
+        session = phrenic.Session("any", server=self.server)
+        ids = [request.session_id for request in self.fake.made("CreateSession")]
+        self.assertEqual(ids, [session.id] * 2)
+        self.assertRegex(session.id, "^any-[0-9a-f]{12}$")
+        self.assertEqual(session.tick, 5)
+        with self.assertRaises(errors.AlreadyExists):  # which of the callers made it is not known
+            phrenic.Session("any", id="mine", server=self.server)
+
+    def test_a_session_whose_creation_was_cut_off_is_deleted(self):
+        operation = create("any", None, "", "", None)
+        made = next(operation)
+        deleted = operation.throw(KeyboardInterrupt())
+        self.assertEqual(deleted.method, "SessionService.DeleteSession")
+        self.assertEqual(deleted.request.session_id, made.request.session_id)
+        with self.assertRaises(KeyboardInterrupt):
+            operation.throw(errors.NotFound("it was not made"))
+
+    def test_a_fork_is_made_once_however_often_the_call_is_repeated(self):
+        session = phrenic.Session("any", server=self.server)
+        then = session_pb2.ForkSessionResponse(session={"id": "x"}, control_token="key")
+        self.fake.answers["ForkSession"] = failing(UNAVAILABLE, 2, then)
+        session.fork()
+        ids = [request.fork_id for request in self.fake.made("ForkSession")]
+        self.assertEqual(ids, ids[:1] * 3)
+        self.assertTrue(ids[0])
+
+    def test_a_job_is_begun_once_however_often_the_call_is_repeated(self):
+        ids = []
+
+        def answer(sent):  # the server has begun it, and the first answer is lost
+            ids.append(sent.request.study_id)
+            raise errors.Unavailable("") if len(ids) == 1 else errors.AlreadyExists("")
+
+        operation = jobs.study("cost", session_pb2.SceneSource(), None, {}, None)
+        sent = next(operation)
+        self.assertTrue(sent.repeatable)
+        for _ in range(2):
+            try:
+                answer(sent)
+            except errors.Error as error:
+                failed = error
+        watch = operation.throw(failed)
+        self.assertEqual(watch.method, "StudyService.WatchStudy")
+        self.assertEqual([watch.request.study_id] * 2, ids)
+        deleted = operation.throw(errors.Unavailable("lost"))
+        self.assertEqual((deleted.method, deleted.repeats), ("StudyService.DeleteStudy", call.FIRST))
+        with self.assertRaisesRegex(errors.Unavailable, "lost"):
+            operation.throw(errors.NotFound("a restarted server has no such study"))
+
+    def test_a_fork_that_cannot_be_changed_is_deleted(self):
+        session = phrenic.Session("any", server=self.server)
+        self.fake.answers["UpdateParameters"] = failing(grpc.StatusCode.INVALID_ARGUMENT, 1, None)
+        with self.assertRaises(errors.InvalidArgument):
+            session.fork(id="branch", breath_force=99)
+        self.assertEqual([r.session_id for r in self.fake.made("DeleteSession")], ["branch"])
+        with self.assertRaisesRegex(errors.InvalidArgument, "no parameter bad"):
+            session.fork(id="other", bad=1)
+        self.assertEqual([r.session_id for r in self.fake.made("DeleteSession")], ["branch", "other"])
+
+    def test_all_calls_are_repeated_for_about_a_minute_but_the_first_for_seconds(self):
+        lost, change = errors.Unavailable(""), call.Call("any", session_pb2.GetSessionRequest())
+        first = call.Call("any", session_pb2.GetSessionRequest(), repeats=call.FIRST)
+        for each, least, most in ((change, 35, 85), (first, 0.5, 3)):
+            waits, attempt = [], 0
+            told = self.assertLogs("phrenic", "WARNING") if each is change else contextlib.nullcontext()
+            with told:
+                while (wait := call.delay_before_repeat(each, lost, attempt, call.RETRIES)) is not None:
+                    waits.append(wait)
+                    attempt += 1
+            self.assertTrue(least < sum(waits) < most, sum(waits))
+        for defaults in (phrenic.connect.__kwdefaults__, phrenic.aio.connect.__kwdefaults__):
+            self.assertEqual(defaults["retries"], call.RETRIES)
+
+    def test_steps_after_a_deadline_begin_where_the_server_was_stopped(self):
+        session = phrenic.Session("any", server=self.server)
+        self.fake.answers["StepSession"] = lambda *_: time.sleep(0.5)
+        with self.assertRaises(errors.DeadlineExceeded):
+            session.step(100, read=(), timeout=0.1)
+        self.fake.answers["StepSession"] = lambda request, _: self.step_at(request.expected_tick)(request)
+        paused = session_pb2.PauseSessionResponse(session={"id": "fake", "tick": 37})
+        self.fake.answers["PauseSession"] = lambda *_: paused
+        self.assertEqual(session.step(1, read=()).tick, 38)
+        self.assertEqual([r.expected_tick for r in self.fake.made("StepSession")], [0, 37])
 
     def test_other_errors_are_not_repeated(self):
         self.fake.answers["UpdateParameters"] = failing(grpc.StatusCode.ABORTED, 9, None)

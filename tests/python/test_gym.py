@@ -163,6 +163,42 @@ class VectorTest(unittest.TestCase):
         *_, infos = patients.step(still)
         self.assertAlmostEqual(infos["seconds"][0], 0.1, 2)
 
+    def test_a_step_ignores_the_actions_of_patients_whose_episode_has_ended(self):
+        patients = VentilateCopdVector(2, **self.OPTIONS)
+        patients.reset(seed=7)
+        still = np.zeros((2, 1), np.float32)
+        for _ in range(3):
+            patients.step(still)
+        _, rewards, *_ = patients.step(np.full((2, 1), np.nan, np.float32))
+        self.assertEqual(rewards.tolist(), [0, 0])
+
+    def test_a_reset_or_step_that_fails_leaves_the_episodes_as_they_were(self):
+        patients, same = (VentilateCopdVector(2, **self.OPTIONS) for _ in range(2))
+        push = np.ones((2, 1), np.float32)
+        for each in (patients, same):
+            each.reset(seed=np.array([3, 4]))
+            each.step(push)
+        for options in ({"airway_resistanse": 5}, {"airway_resistance": -1}, [1]):
+            with self.assertRaises(phrenic.errors.InvalidArgument):
+                patients.reset(seed=9, options=options)
+        with self.assertRaises(phrenic.errors.InvalidArgument):
+            patients.step([["a"], [1]])
+        for (rows, rewards, *_), (expected, others, *_) in ((patients.step(push), same.step(push)),):
+            np.testing.assert_array_equal(rows, expected)
+            np.testing.assert_array_equal(rewards, others)
+
+    def test_seeds_come_in_an_array_and_a_closed_environment_takes_no_step(self):
+        patients = VentilateCopdVector(2, **self.OPTIONS)
+        rows = [patients.reset(seed=seed)[0] for seed in ([1, 2], np.array([1, 2]), 1, np.int64(1), (1, 2))]
+        for row in rows[1:]:
+            np.testing.assert_array_equal(row, rows[0])
+        for seed in ("12", [1.5, 2], 1.5, np.array([1])):
+            with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "seed"):
+                patients.reset(seed=seed)
+        patients.close()
+        with self.assertRaisesRegex(phrenic.errors.FailedPrecondition, "reset"):
+            patients.step(np.zeros((2, 1), np.float32))
+
     def test_wrong_requests_are_refused(self):
         patients = KeepBreathingVector(2, **self.OPTIONS)
         with self.assertRaisesRegex(phrenic.errors.FailedPrecondition, "reset"):
@@ -170,6 +206,6 @@ class VectorTest(unittest.TestCase):
         with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "3 seeds for 2"):
             patients.reset(seed=[1, 2, 3])
         patients.reset(seed=1)
-        for actions in (np.zeros((3, 1)), np.full((2, 1), 4), np.full((2, 1), np.nan)):
+        for actions in (np.zeros((3, 1)), np.zeros(2), np.full((2, 1), 4), np.full((2, 1), np.nan)):
             with self.assertRaises(phrenic.errors.InvalidArgument):
                 patients.step(actions.astype(np.float32))

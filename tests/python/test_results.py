@@ -25,6 +25,17 @@ ROWS = [
 ]
 
 
+class UnevenTest(unittest.TestCase):
+    def test_a_table_has_the_columns_of_every_row(self):
+        table = phrenic.Table([{"a": 1.5}, {"b": "x", "a": 2.0}])
+        self.assertEqual(table.columns, ["a", "b"])
+        self.assertEqual(list(table["b"]), [None, "x"])
+        self.assertEqual(table.to_csv().splitlines(), ["a,b", "1.5,", "2.0,x"])
+        self.assertIn("b", str(table).splitlines()[0])
+        self.assertIn("<td", table._repr_html_())
+        self.assertEqual(phrenic.Table([{}, {"n": 1.0}])["n"][1], 1)
+
+
 class ResultTest(unittest.TestCase):
     physiology = jobs.Physiology(
         phrenic.Table([{"breath": "quiet", "what": "flow", "verdict": "inside"}]),

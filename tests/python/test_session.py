@@ -18,6 +18,15 @@ class SessionsTest(SessionTest):
         self.assertEqual(first, again)
         np.testing.assert_allclose([t for t, _ in first], np.arange(1, 11) / 20, atol=1e-3)
 
+    def test_a_change_that_waits_for_its_tick_belongs_to_one_session(self):
+        with self.session() as s:
+            s.set(at_tick=5, breath_force=3)
+            with s.fork() as fork:
+                self.assertEqual((s.status.waiting_updates, fork.status.waiting_updates), (1, 0))
+                s.step(10), fork.step(10)
+                s.frame(), fork.frame()
+                self.assertNotEqual(s.state_hash, fork.state_hash)
+
     def test_parameters_apply_now_or_at_a_tick(self):
         session, late = self.session(set={"breath_force": 1.5}), self.session()
         self.assertEqual(session.parameters["breath_force"], 1.5)

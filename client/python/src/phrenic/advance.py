@@ -18,8 +18,9 @@ from typing import TYPE_CHECKING, Any, Iterator, Optional, Sequence
 
 import grpc
 
+from .arguments import whole
 from .call import Call
-from .errors import FailedPrecondition, InvalidArgument, Unavailable, error_of
+from .errors import Error, FailedPrecondition, Unavailable, error_of
 from .frame import Frame
 from .operations import SimulationWarning, parameters_of, parts_of
 from .v1 import session_pb2
@@ -37,9 +38,10 @@ class Requests:
 
     def __init__(self, session: "SessionOperations", read: Sequence[str]) -> None:
         self._session = session
-        self._parts = parts_of(tuple(read))
+        self._parts = parts_of(read)
         self._pending: deque[int] = deque()
         self._tick = session.tick
+        self._answers: Any = None
 
     @property
     def pending(self) -> int:
@@ -47,6 +49,10 @@ class Requests:
         return len(self._pending)
 
     def _request(self, ticks: int, parameters: dict[str, Any]) -> session_pb2.AdvanceRequest:
+        self._session._check_open()
+        ticks = whole("ticks", ticks)
+        if not self._pending:  # other calls may have stepped
+            self._tick = self._session.tick
         request = session_pb2.AdvanceRequest(
             session_id=self._session.id, ticks=ticks, control_token=self._session._token, read=self._parts
         )
@@ -70,6 +76,18 @@ class Requests:
             warnings.warn(text, SimulationWarning, stacklevel=4)
         return self._session._frame_of(answer.state, answer, self._parts)
 
+    def _failed(self, failed: grpc.RpcError) -> Error:
+        """Returns the error that has ended the stream. Steps that were sent after it are not taken."""
+        self.leave()
+        return error_of(failed)
+
+    def leave(self) -> None:
+        """Ends the stream. While answers are pending, the session's next call finds out how far the steps were taken."""
+        self._session._unsettled |= bool(self._pending)
+        self._pending.clear()
+        if self._answers is not None:
+            self._answers.cancel()
+
     def _call(self) -> Call:
         return Call(METHOD, session_pb2.AdvanceRequest(session_id=self._session.id))
 
@@ -80,7 +98,9 @@ class Steps(Requests):
     (DeadlineExceeded): make a new one."""
 
     def __init__(self, session: "SessionOperations", channel: "Channel", read: Sequence[str]) -> None:
+        session._leave_stream()
         super().__init__(session, read)
+        session._stream = self
         self._sent: queue.SimpleQueue[Optional[session_pb2.AdvanceRequest]] = queue.SimpleQueue()
         self._answers = channel.converse(self._call(), iter(self._sent.get, None))
 
@@ -102,9 +122,10 @@ class Steps(Requests):
         try:
             return self._frame(next(self._answers))
         except StopIteration:
+            self.leave()
             raise Unavailable("the stream of steps was closed") from None
         except grpc.RpcError as failed:
-            raise error_of(failed) from None
+            raise self._failed(failed) from None
 
     def step(self, ticks: int = 1, **parameters: Any) -> Frame:
         """Sends and receives. FailedPrecondition while answers of other steps are pending."""
@@ -114,15 +135,15 @@ class Steps(Requests):
         return self.receive()
 
     def close(self) -> None:
-        """Ends the stream. Steps that were sent and not received may still be taken."""
+        """Ends the stream. Of the steps that were sent and not received, some may be taken; the session's next call knows
+        how many."""
         self._sent.put(None)
-        self._answers.cancel()
+        self.leave()
 
 
 def frames_ahead_of(ticks: Sequence[int], ahead: int) -> deque[int]:
     """Returns the steps of each frame that is left. InvalidArgument if `ahead` is negative."""
-    if ahead < 0:
-        raise InvalidArgument(f"ahead: {ahead} is below 0")
+    whole("ahead", ahead)
     return deque(ticks)
 
 
@@ -141,18 +162,18 @@ class AsyncSteps(Requests):
     """Steps for asyncio: `async with s.advance() as steps: await steps.step()`."""
 
     def __init__(self, session: "aio.Session", read: Sequence[str]) -> None:
+        session._leave_stream()
         super().__init__(session, read)
-        self._answers: Any = None
 
     async def __aenter__(self) -> "AsyncSteps":
         session: Any = self._session
         await session._do(session._describe(self._parts))
-        self._tick = session.tick
         self._answers = session._begun().converse(self._call())
+        session._stream = self
         return self
 
     async def __aexit__(self, *_: Any) -> None:
-        self._answers.cancel()
+        self.leave()
 
     async def send(self, ticks: int = 1, **parameters: Any) -> None:
         """As Steps.send."""
@@ -168,10 +189,11 @@ class AsyncSteps(Requests):
             answer = await self._answers.read()
             if answer is grpc.aio.EOF:
                 await self._answers  # raises the status
+                self.leave()
                 raise Unavailable("the stream of steps was closed")
             return self._frame(answer)
         except grpc.RpcError as failed:
-            raise error_of(failed) from None
+            raise self._failed(failed) from None
 
     async def step(self, ticks: int = 1, **parameters: Any) -> Frame:
         """As Steps.step."""

@@ -11,6 +11,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any, AsyncGenerator, AsyncIterator, Container, Iterable, Mapping, Optional, Sequence, Union
@@ -20,7 +21,8 @@ import grpc.aio
 
 from . import jobs
 from .advance import AsyncSteps, frames_ahead_of
-from .call import Call, Operation, T, delay_before_repeat, one
+from .arguments import whole
+from .call import FIRST, RETRIES, Call, Operation, T, delay_before_repeat, one
 from .connection import Channel, Target, Tls, target_of
 from .errors import Error, FailedPrecondition, error_of
 from .fits import Fit, Landmarks, fitted
@@ -30,6 +32,7 @@ from .operations import (
     Scene,
     SessionOperations,
     attach,
+    check_server,
     create,
     describe,
     scenes,
@@ -56,12 +59,16 @@ async def _closing(values: AsyncGenerator[T, None]) -> AsyncIterator[AsyncGenera
 class Connection(Channel):
     """An asyncio connection, of one event loop."""
 
+    asynchronous = True
+
     def __init__(self, target: Target) -> None:
         super().__init__(target, grpc.aio)
 
     async def close(self) -> None:
-        """Ends the calls in progress."""
-        await self._channel.close()
+        """Ends the calls in progress. Has no effect in a forked process, whose parent has the connection."""
+        self._closed = True
+        if self._process == os.getpid():
+            await self._channel.close()
 
     async def run(self, operation: Operation[T]) -> T:
         """Performs the operation's calls and returns its result."""
@@ -128,6 +135,8 @@ class Session(SessionOperations):
         server: Optional["Server"] = None,
     ) -> None:
         super().__init__(session_pb2.Session(), "", owned=True)
+        if server is not None:
+            check_server(server, asynchronous=True)
         self._connection: Optional[Connection] = server.connection if server else None
         self._shared = server is not None
         self._source = source_of(scene, resolution_mm)
@@ -136,10 +145,11 @@ class Session(SessionOperations):
     def _begun(self) -> Connection:
         if self._connection is None:
             raise FailedPrecondition("the session has not begun: use `async with`")
+        self._check_open()
         return self._connection
 
     async def _do(self, operation: Operation[T]) -> T:
-        return await self._begun().run(operation)
+        return await self._begun().run(self._ready(operation))
 
     @classmethod
     def _of(
@@ -174,8 +184,9 @@ class Session(SessionOperations):
 
     async def close(self) -> None:
         """Deletes the session, unless it was joined by attach() or has not begun."""
-        if self._owned and self._creation is None:
-            await self._do(self._delete())
+        if self._owned and self._creation is None and not self._closed:
+            await self._begun().run(self._delete())
+        self._closed = self._creation is None
         if self._connection is not None and not self._shared:
             await self._connection.close()
 
@@ -191,7 +202,7 @@ class Session(SessionOperations):
         self, seconds: float, fps: float = 60, read: Sequence[str] = ("bodies",), ahead: int = 0
     ) -> AsyncIterator[Frame]:
         """As phrenic.Session.play."""
-        if ahead != 0:
+        if whole("ahead", ahead) != 0:
             left = frames_ahead_of(self._frame_ticks(seconds, fps), ahead)
             async with self.advance(read) as steps:
                 while left or steps.pending:
@@ -246,8 +257,12 @@ class Session(SessionOperations):
         """As phrenic.Session.fork."""
         made = await self._do(self._fork(id))
         fork = Session._of(self._begun(), made.session, made.control_token, True, self._source)
-        if parameters:
-            await fork.set(**parameters)
+        try:
+            if parameters:
+                await fork.set(**parameters)
+        except BaseException:
+            await fork.close()
+            raise
         return fork
 
     async def run(self, speed: float = 1, until: float = 0) -> None:
@@ -345,7 +360,11 @@ class Server(ServerFacts):
 
     async def __aenter__(self) -> "Server":
         request = server_pb2.GetServerRequest()
-        self.about = await self.connection.run(one(Call("ServerService.GetServer", request)))
+        try:
+            self.about = await self.connection.run(one(Call("ServerService.GetServer", request, repeats=FIRST)))
+        except BaseException:
+            await self.connection.close()
+            raise
         return self
 
     async def __aexit__(self, *_: Any) -> None:
@@ -378,7 +397,7 @@ def connect(
     token: Optional[str] = None,
     tls: Union[bool, str, Path, Tls, None] = None,
     timeout: float = 120,
-    retries: int = 5,
+    retries: int = RETRIES,
 ) -> Server:
     """As phrenic.connect. phrenic.local().address is a server to connect to."""
     return Server(target_of(address, token, tls, timeout, retries))
@@ -388,6 +407,7 @@ def connect(
 async def _connected(server: Optional[Server]) -> AsyncIterator[Connection]:
     """The server's connection, or one to the default server, which is closed at the end."""
     if server is not None:
+        check_server(server, asynchronous=True)
         yield server.connection
         return
     connection = Connection((await asyncio.to_thread(default_server)).connection.target)
@@ -406,7 +426,7 @@ async def batch(
     preset: str = "",
     resolution_mm: Optional[float] = None,
     start: Union[Frame, State, None] = None,
-    starts: Optional[Iterable[State]] = None,
+    starts: Optional[Iterable[Union[Frame, State]]] = None,
     read: Sequence[str] = (),
     summary: bool = False,
     threads: Optional[int] = None,

@@ -3,7 +3,10 @@ the async client share every line but the one that waits."""
 
 from __future__ import annotations
 
+import logging
 import random
+import re
+import uuid
 from dataclasses import dataclass
 from typing import Any, Callable, Generator, Optional, TypeVar
 
@@ -58,6 +61,10 @@ class Call:
     """For a streaming call: receives each message. The answer is then None."""
     repeatable: bool = True
     """True if a repeat after a lost connection changes nothing more."""
+    repeats: Optional[int] = None
+    """The most repeats; None: the connection's `retries`."""
+    passing: tuple[type[Error], ...] = ()
+    """Errors beside Unavailable that pass by themselves, so that the call is repeated."""
 
     @property
     def metadata(self) -> list[tuple[str, str]]:
@@ -66,12 +73,32 @@ class Call:
         return [("x-session-id", session)] if session and session.isascii() and session.isprintable() else []
 
 
+RETRIES = 160
+"""Repeats of a call while the server is unavailable, which take about a minute, as long as the command line waits."""
+FIRST = 6
+"""Repeats of the first call of a connection, about 2 s: an address where no server runs is told soon."""
+
+
 def delay_before_repeat(call: Call, error: Error, attempt: int, retries: int) -> Optional[float]:
     """Returns how long to wait before the call is repeated [s], or None if the error is final: only UNAVAILABLE is
-    repeated, after 0.1, 0.2, 0.4 ... s with jitter, at most 2 s."""
-    if not isinstance(error, Unavailable) or not call.repeatable or attempt >= retries:
+    repeated, and what the call names as passing, after 0.1, 0.2, 0.4 ... s with jitter, at most 0.5 s. It is the rule of
+    all calls, batches too. The logger "phrenic" warns once, after about 1 s."""
+    most = retries if call.repeats is None else min(call.repeats, retries)
+    if not isinstance(error, (Unavailable, *call.passing)) or not call.repeatable or attempt >= most:
         return None
-    return min(2.0, 0.1 * 2**attempt) * random.uniform(0.5, 1)
+    if attempt == 4 and most > FIRST:
+        logging.getLogger("phrenic").warning("%s; repeating %s up to %d times", error.message, call.method, most)
+    return min(0.5, 0.1 * 2 ** min(attempt, 10)) * random.uniform(0.5, 1)
+
+
+def new_id(stem: str) -> str:
+    """Returns an id that nothing else on a server has, by which a repeated call makes it once: `stem` and 48 random bits.
+
+    >>> len(new_id("thorax")), new_id("My scene")[:9]
+    (19, 'my-scene-')
+    """
+    name = re.sub(r"[^a-z0-9]+", "-", stem.lower()).strip("-")[:40].strip("-")
+    return f"{name or 'new'}-{uuid.uuid4().hex[:12]}"
 
 
 def one(call: Call) -> Operation[Any]:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import ipaddress
 import os
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Iterator, Optional, TypeVar, Union
 
 import grpc
 
-from .call import SERVICES, Call, Operation, delay_before_repeat
-from .errors import InvalidArgument, error_of
+from .call import RETRIES, SERVICES, Call, Operation, delay_before_repeat
+from .arguments import path_of, positive, text_of, whole
+from .errors import Closed, FailedPrecondition, InvalidArgument, error_of
 
 T = TypeVar("T")
 
@@ -35,7 +36,7 @@ class Target:
     host: str
     """HOST:PORT."""
     tls: Optional[Tls]
-    metadata: tuple[tuple[str, str], ...]
+    metadata: tuple[tuple[str, str], ...] = field(repr=False)
     timeout: float
     """Deadline of a call that does not compute [s]."""
     retries: int
@@ -46,7 +47,7 @@ def target_of(
     token: Optional[str] = None,
     tls: Union[bool, str, Path, Tls, None] = None,
     timeout: float = 120,
-    retries: int = 5,
+    retries: int = RETRIES,
 ) -> Target:
     """Reads an address and the environment: PHRENIC_TOKEN, PHRENIC_JOIN.
 
@@ -58,20 +59,31 @@ def target_of(
     phrenic.errors.InvalidArgument: the token would be sent to phrenic.example.org:50051 unencrypted, readable by others
     on the network; use https://phrenic.example.org:50051
     """
-    scheme, _, host = address.rpartition("://")
+    scheme, _, host = text_of("address", address).rpartition("://")
     if scheme not in ("", "http", "https") or not host.rpartition(":")[2].isdigit():
         raise InvalidArgument(f"{address} is not HOST:PORT or https://HOST:PORT")
     if scheme == "https" and not tls:
         tls = True
     encryption = None if not tls else tls if isinstance(tls, Tls) else Tls() if tls is True else Tls(ca=tls)
-    token = token or os.environ.get("PHRENIC_TOKEN", "")
-    join = os.environ.get("PHRENIC_JOIN", "")
+    token = _secret("token", text_of("token", token or "") or os.environ.get("PHRENIC_TOKEN", ""))
+    join = _secret("PHRENIC_JOIN", os.environ.get("PHRENIC_JOIN", ""))
+    timeout, retries = positive("timeout", timeout), whole("retries", retries)
     metadata = tuple(p for p in (("authorization", f"Bearer {token}"), ("x-join", join)) if p[1] not in ("", "Bearer "))
     if metadata and encryption is None and not _is_loopback(host):
         raise InvalidArgument(
             f"the token would be sent to {host} unencrypted, readable by others\non the network; use https://{host}"
         )
     return Target(host, encryption, metadata, timeout, retries)
+
+
+def _secret(name: str, value: str) -> str:
+    """Returns the value if a header can have it. InvalidArgument, which does not show it, if not."""
+    if not all("!" <= letter <= "~" for letter in value):
+        raise InvalidArgument(
+            f"{name}: it has a space, a line break or another character that no token has: "
+            "take the text that was given to you alone, as by .strip()"
+        )
+    return value
 
 
 def _is_loopback(host: str) -> bool:
@@ -83,12 +95,12 @@ def _is_loopback(host: str) -> bool:
 
 
 def channel_options() -> list[tuple[str, Any]]:
-    """As the command line has them."""
+    """As the command line has them, but for a shorter wait between two attempts to connect."""
     return [
         ("grpc.max_receive_message_length", -1),
         ("grpc.enable_http_proxy", 0),
         ("grpc.initial_reconnect_backoff_ms", 100),
-        ("grpc.max_reconnect_backoff_ms", 1000),
+        ("grpc.max_reconnect_backoff_ms", 300),
         ("grpc.keepalive_time_ms", 10_000),  # detects a broken connection while nothing is sent
         ("grpc.keepalive_timeout_ms", 3_000),
     ]
@@ -99,11 +111,26 @@ def credentials_of(tls: Tls) -> grpc.ChannelCredentials:
 
     def read(path: Union[str, Path, None]) -> Optional[bytes]:
         try:
-            return Path(path).read_bytes() if path else None
+            return path_of("tls", path).read_bytes() if path else None
         except OSError as error:
             raise InvalidArgument(f"tls: {path} cannot be read: {error.strerror}") from None
 
     return grpc.ssl_channel_credentials(read(tls.ca), read(tls.key), read(tls.cert))
+
+
+FORKED = (
+    "this process was forked from one that had called a server, and gRPC's connections do not outlive a fork: start "
+    'processes by multiprocessing.get_context("spawn"), or fork before the first call'
+)
+_first_process = 0  # that has made a channel; a forked process inherits it
+
+
+def check_process() -> None:
+    """Notes that this process uses gRPC. FailedPrecondition if it was forked from one that did."""
+    global _first_process
+    _first_process = _first_process or os.getpid()
+    if _first_process != os.getpid():
+        raise FailedPrecondition(FORKED)
 
 
 class Channel:
@@ -112,6 +139,8 @@ class Channel:
     def __init__(self, target: Target, api: Any) -> None:
         """`api`: grpc or grpc.aio."""
         self.target = target
+        self._process, self._closed = os.getpid(), False
+        check_process()
         self._channel = (
             api.secure_channel(target.host, credentials_of(target.tls), channel_options())
             if target.tls
@@ -122,27 +151,43 @@ class Channel:
     def open(self, call: Call, timeout: Optional[float] = None) -> Any:
         """Starts a call; returns its answer, or the messages of a streaming one. Without `timeout` [s] it has no
         deadline."""
-        service, _, method = call.method.partition(".")
         metadata = [*self.target.metadata, *call.metadata]
-        return getattr(self._stubs[service], method)(call.request, timeout=timeout, metadata=metadata)
+        return self._method(call)(call.request, timeout=timeout, metadata=metadata)
 
     def converse(self, call: Call, *requests: Any) -> Any:
         """Starts a call whose requests are a stream, routed and without a deadline; returns its answers. `requests`: their
         iterator, for the blocking client."""
-        service, _, method = call.method.partition(".")
         metadata = [*self.target.metadata, *call.metadata]
-        return getattr(self._stubs[service], method)(*requests, metadata=metadata)
+        return self._method(call)(*requests, metadata=metadata)
+
+    @property
+    def closed(self) -> bool:
+        """True after close()."""
+        return self._closed
+
+    def _method(self, call: Call) -> Any:
+        """Returns the stub of a call. Closed after close(), FailedPrecondition in a forked process."""
+        if self._process != os.getpid():
+            raise FailedPrecondition(FORKED)
+        if self._closed:
+            raise Closed(f"the connection to {self.target.host} is closed: make another by phrenic.connect or phrenic.local")
+        service, _, method = call.method.partition(".")
+        return getattr(self._stubs[service], method)
 
 
 class Connection(Channel):
     """A blocking connection. Thread-safe. Does not connect before the first call."""
 
+    asynchronous = False
+
     def __init__(self, target: Target) -> None:
         super().__init__(target, grpc)
 
     def close(self) -> None:
-        """Ends the calls in progress."""
-        self._channel.close()
+        """Ends the calls in progress. Has no effect in a forked process, whose parent has the connection."""
+        self._closed = True
+        if self._process == os.getpid():
+            self._channel.close()
 
     def run(self, operation: Operation[T]) -> T:
         """Performs the operation's calls and returns its result."""

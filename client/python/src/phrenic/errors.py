@@ -86,6 +86,10 @@ class FailedPrecondition(Error):
     code = "FAILED_PRECONDITION"
 
 
+class Closed(FailedPrecondition):
+    """The session, the connection or its server was closed by this program; the message says which, and what to do."""
+
+
 class Aborted(Error):
     """The expected tick or revision is stale, or another caller steps the session."""
 
@@ -119,6 +123,12 @@ class Unavailable(Error, ConnectionError):
     remedy = "start a server with deploy/run or phrenicd, check the address, or use phrenic.local()"
 
 
+class NotStarted(Unavailable):
+    """phrenicd was not found or did not start; the message has its own text."""
+
+    remedy = ""
+
+
 class DataLoss(Error):
     """A file arrived damaged."""
 
@@ -133,7 +143,7 @@ class Unauthenticated(Error, PermissionError):
     remedy = "pass phrenic.connect(..., token=TOKEN) or set PHRENIC_TOKEN"
 
 
-_CLASSES = {each.code: each for each in Error.__subclasses__()}
+_CLASSES = {each.code: each for each in Error.__subclasses__()}  # Closed and NotStarted have no code of their own
 
 
 def make_error(code: str, message: str) -> Error:

@@ -11,17 +11,18 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Iterable, Mapping, Optional, Sequence, Union
 
 import numpy as np
 from google.protobuf import text_format
 
+from .arguments import finite, mapping, path_of
 from .call import LONG, Call, Operation
 from .errors import FailedPrecondition, InvalidArgument
 from .frame import vectors
 from .jobs import Progress
 from .names import fill, row
-from .operations import Scene, source_of
+from .operations import Scene, check_server, source_of
 from .table import Table
 from .v1 import fit_pb2, geometry_pb2, scene_pb2, session_pb2
 
@@ -154,6 +155,7 @@ def fit(
         from .server import default_server
 
         server = default_server()
+    check_server(server)
     options = {"modes": modes, "split": split, "assimilate": assimilate, "scene_name": scene_name,
                "show_landmarks": show_landmarks}  # fmt: skip
     options |= {"exhale": exhale, "surfaces": surfaces, "lung_surfaces": lung_surfaces, "volume": volume,
@@ -166,7 +168,7 @@ def fitted(
 ) -> Operation[Fit]:
     """Fits, and returns the result. `options`: those of `fit`."""
     given = {kind: options.get(name) for name, kind in OPTIONS.items()}
-    measured = _measured(landmarks, given, options.get("errors") or {})
+    measured = _measured(landmarks, given, mapping("errors", options.get("errors")))
     files = [] if landmarks is None or measured else landmark_files(landmarks)
     fields = {name: value for name, value in options.items() if name not in OPTIONS and name != "errors"}
     request = fill(fit_pb2.FitMotionRequest(source=source, landmarks=files, measured=measured), fields)
@@ -200,14 +202,17 @@ def _measured(
         content = landmark_files(landmarks)[0].content
         files.append(fit_pb2.MeasuredFile(kind=KINDS["landmarks"], name="landmarks", content=content))
         if "landmarks" in errors:
-            files[-1].error = errors["landmarks"]
+            files[-1].error = finite("errors: landmarks", errors["landmarks"])
     return files + [_measured_file("landmarks", path, errors) for path in pairs]
 
 
 def _listed(paths: Any) -> list[Any]:
     if paths is None:
         return []
-    return [paths] if isinstance(paths, (str, Path)) else list(paths)
+    each = [paths] if isinstance(paths, (str, Path)) else paths
+    if not isinstance(each, Iterable):
+        raise InvalidArgument(f"{paths!r} is neither a file nor a list of files")
+    return [path_of("files", path) for path in each]
 
 
 def _suffix(text: str) -> tuple[str, str]:
@@ -226,7 +231,7 @@ def _measured_file(kind: str, text: str, errors: Mapping[str, float]) -> fit_pb2
     except OSError as error:
         raise InvalidArgument(f"{path}: {error.strerror}") from None
     if kind in errors:
-        file.error = errors[kind]
+        file.error = finite(f"errors: {kind}", errors[kind])
     if suffix in ("right", "left"):
         file.side = geometry_pb2.SIDE_LEFT if suffix == "left" else geometry_pb2.SIDE_RIGHT
     elif suffix in ("inhale", "exhale"):
@@ -243,8 +248,7 @@ def landmark_files(landmarks: Landmarks) -> list[fit_pb2.LandmarkFile]:
             raise InvalidArgument(f"landmarks: an array of shape {landmarks.shape} is not (n, 6): {COLUMNS} in mm")
         lines = (",".join(repr(float(number)) for number in row) for row in landmarks)
         return [fit_pb2.LandmarkFile(name="landmarks", content="\n".join((COLUMNS, *lines)).encode())]
-    paths = [landmarks] if isinstance(landmarks, (str, Path)) else landmarks
-    return [_file(Path(path)) for path in paths]
+    return [_file(path) for path in _listed(landmarks)]
 
 
 def _file(path: Path) -> fit_pb2.LandmarkFile:

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional
 
 import numpy as np
 
+from .arguments import mapping, positive, whole
 from .errors import FailedPrecondition, InvalidArgument, OutOfRange
 from .operations import Scene, SimulationWarning
 from .session import Session
@@ -56,6 +57,7 @@ class BreathingEnv(Env):
         server: Optional["Server"] = None,
     ) -> None:
         """`interval`: time for which an action is held [s]."""
+        seconds, interval = positive("seconds", seconds), positive("interval", interval)
         if not 0 < interval <= seconds:
             raise InvalidArgument("interval: choose one above 0 and not above seconds")
         self.action_space, self.observation_space = self.task.action_space, self.task.observation_space
@@ -68,13 +70,13 @@ class BreathingEnv(Env):
         self, *, seed: Optional[int] = None, options: Optional[Mapping[str, Any]] = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Begins an episode. `options`: live parameters of the patient, such as {"airway_resistance": 5}."""
-        super().reset(seed=seed)
+        super().reset(seed=None if seed is None else whole("seed", seed))
         self.close()
         self._episode = Episode.begin(self.task, self.np_random, self._cost)
         self._session = Session(
             self._scene,
             preset=self.task.preset,
-            set={**self._episode.start, **(options or {})},
+            set={**self._episode.start, **mapping("options", options)},
             resolution_mm=self._resolution,
             server=self._server,
         )

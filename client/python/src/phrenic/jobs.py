@@ -11,10 +11,11 @@ from typing import Any, BinaryIO, Callable, Mapping, Optional, Union
 
 import numpy as np
 
-from .call import LONG, Call, Operation
-from .errors import DataLoss, FailedPrecondition, InvalidArgument, NotFound, Unavailable
+from .arguments import names_of, new_file, path_of, text_of
+from .call import FIRST, LONG, Call, Operation, new_id
+from .errors import AlreadyExists, Closed, DataLoss, FailedPrecondition, InvalidArgument, NotFound, Unavailable
 from .junit import Check, junit
-from .names import fill, is_repeated, nearest, row
+from .names import Named, fill, is_repeated, nearest, row
 from .table import Table
 from .v1 import compare_pb2, export_pb2, physiology_pb2, session_pb2, study_pb2
 
@@ -30,19 +31,36 @@ def export(
     session_id: str, path: Union[str, Path], options: Mapping[str, Any], progress: Progress
 ) -> Operation[dict[str, Any]]:
     """Records a copy of the session to a file, whose ending chooses the format. Returns the summary."""
-    path = Path(path)
+    path = new_file("path", path)
     formats = (yield Call("ExportService.ListFormats", export_pb2.ListFormatsRequest())).formats
     known = {each.name: each for each in formats}
     name = path.suffix[1:]
     if name not in known:
         raise InvalidArgument(f"{path}: there is no format {name!r}: {nearest(name, known)}")
-    request = export_pb2.CreateExportRequest(session_id=session_id, format=name, file_stem=path.stem)
-    job = (yield Call("ExportService.CreateExport", fill(request, options), LONG, repeatable=False)).job
+    id = new_id("export")
+    request = export_pb2.CreateExportRequest(export_id=id, session_id=session_id, format=name, file_stem=path.stem)
+    yield from _begun(Call("ExportService.CreateExport", fill(request, options), LONG))
     try:
-        summary = yield from _export_done(job.id, progress)
-        return (yield from _download(job.id, path, summary, known[name].ending == "zip"))
+        summary = yield from _export_done(id, progress)
+        return (yield from _download(id, path, summary, known[name].ending == "zip"))
     finally:
-        yield Call("ExportService.DeleteExport", export_pb2.DeleteExportRequest(export_id=job.id))
+        yield from _dropped(Call("ExportService.DeleteExport", export_pb2.DeleteExportRequest(export_id=id), repeats=FIRST))
+
+
+def _begun(call: Call) -> Operation[None]:
+    """Begins a job with an id of this client's choice, once, however often the call is repeated."""
+    try:
+        yield call
+    except AlreadyExists:  # by a call whose answer was lost: no other client has the id
+        pass
+
+
+def _dropped(call: Call) -> Operation[None]:
+    """Deletes a job, which may have ended with its server."""
+    try:
+        yield call
+    except (NotFound, Unavailable, Closed):
+        pass
 
 
 def _export_done(id: str, progress: Progress) -> Operation[export_pb2.ExportSummary]:
@@ -137,9 +155,10 @@ def study(
     kind: str, source: session_pb2.SceneSource, parameters: Any, options: Mapping[str, Any], progress: Progress
 ) -> Operation[Study]:
     """Runs a study on the server and deletes it there."""
-    request = study_pb2.CreateStudyRequest(source=source, parameters=parameters)
+    id = new_id("study")
+    request = study_pb2.CreateStudyRequest(study_id=id, source=source, parameters=parameters)
     getattr(request, kind).CopyFrom(fill(STUDIES[kind](), options))
-    id = (yield Call("StudyService.CreateStudy", request, LONG, repeatable=False)).study.id
+    yield from _begun(Call("StudyService.CreateStudy", request, LONG))
     try:
         seen: list[study_pb2.Study] = []
 
@@ -153,7 +172,7 @@ def study(
             raise FailedPrecondition((seen and seen[0].problem) or "the study has not ended")
         return study_of(seen[0].result, (yield from _page(id)))
     finally:
-        yield Call("StudyService.DeleteStudy", study_pb2.DeleteStudyRequest(study_id=id))
+        yield from _dropped(Call("StudyService.DeleteStudy", study_pb2.DeleteStudyRequest(study_id=id), repeats=FIRST))
 
 
 def _page(id: str) -> Operation[str]:
@@ -231,8 +250,8 @@ def physiology(source: session_pb2.SceneSource, presets: Any, progress: Progress
         elif progress:
             progress(event.progress, "breathing")
 
-    request = study_pb2.CheckPhysiologyRequest(source=source, presets=presets)
-    yield Call("StudyService.CheckPhysiology", request, LONG, note, repeatable=False)
+    request = study_pb2.CheckPhysiologyRequest(source=source, presets=names_of("presets", presets))
+    yield Call("StudyService.CheckPhysiology", request, LONG, note)
     curves: dict[str, dict[str, tuple[np.ndarray, np.ndarray]]] = {}
     for curve in tables[-1].curves:
         curves.setdefault(curve.breath, {})[curve.what] = (np.array(curve.time_s), np.array(curve.values))
@@ -259,7 +278,7 @@ class Comparison:
 
     def __getitem__(self, name: str) -> float:
         """Returns a distance of the whole surfaces, such as ["hd95_max"]."""
-        return self.rows[0][name]
+        return Named(self.rows[0], "distance")[name]
 
 
 def comparison(
@@ -281,19 +300,19 @@ def compare(a: compare_pb2.ComparedSurface, b: compare_pb2.ComparedSurface, opti
             tables.append(event.table)
 
     request = fill(compare_pb2.CompareRequest(a=a, b=b), options)
-    yield Call("CompareService.Compare", request, LONG, note, repeatable=False)
+    yield Call("CompareService.Compare", request, LONG, note)
     rows = ({**row(each), **row(each.distance)} for each in tables[-1].rows)
     return Comparison(Table(rows), tables[-1].definition, list(tables[-1].warnings))
 
 
 def body_of(session_id: str, body: str) -> compare_pb2.ComparedSurface:
     """A body of a session, as it is now; empty: the deformable body with the most triangles."""
-    return compare_pb2.ComparedSurface(body=compare_pb2.SessionBody(session_id=session_id, body=body))
+    return compare_pb2.ComparedSurface(body=compare_pb2.SessionBody(session_id=session_id, body=text_of("body", body)))
 
 
 def file_of(path: Union[str, Path], options: Mapping[str, Any]) -> compare_pb2.ComparedSurface:
     """A surface or motion file."""
-    path = Path(path)
+    path = path_of("other", path)
     try:
         return fill(compare_pb2.ComparedSurface(name=path.name, content=path.read_bytes()), options)
     except OSError as error:

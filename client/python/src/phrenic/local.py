@@ -13,34 +13,36 @@ from pathlib import Path
 from typing import Optional, Sequence, Union
 from urllib.parse import urlsplit
 
-from .errors import Unavailable
+from .errors import NotStarted
 
 _PREFIX = "phrenic-"
 
 
 def binary(path: Union[str, Path, None] = None) -> str:
     """Returns phrenicd: the given one, that of $PHRENICD, of the build that this package lies in, or of the PATH.
-    Unavailable if there is none."""
+    NotStarted if there is none."""
     built = Path(__file__).resolve().parents[3] / "phrenicd"  # build/python/src/phrenic/local.py
     for candidate in (path, os.environ.get("PHRENICD"), built if built.is_file() else None, shutil.which("phrenicd")):
         if candidate:
             found = shutil.which(str(candidate))
             if found is None:
-                raise Unavailable(f"{candidate} is not a program")
+                raise NotStarted(f"{candidate} is not a program: give the path of phrenicd")
             return found
-    raise Unavailable("there is no phrenicd: install the package phrenic, run deploy/run --build-only, or set PHRENICD")
+    raise NotStarted("there is no phrenicd: install the package phrenic, run deploy/run --build-only, or set PHRENICD")
 
 
 class Process:
     """phrenicd on free loopback ports, with a temporary folder. Ends with stop(), and with this process, however that
-    ends: the kernel signals it (setpriv --pdeathsig)."""
+    ends: the kernel signals it (setpriv --pdeathsig). A process that is forked from this one does not end it."""
 
     def __init__(self, program: str, flags: Sequence[str], data: Union[str, Path, None]) -> None:
         _sweep()
-        self._folder = tempfile.TemporaryDirectory(prefix=f"{_PREFIX}{os.getpid()}-")
-        self.log = Path(self._folder.name) / "log"
+        self._parent = os.getpid()
+        # Not a TemporaryDirectory: the exit of a forked process would remove it.
+        self._folder = tempfile.mkdtemp(prefix=f"{_PREFIX}{self._parent}-")
+        self.log = Path(self._folder) / "log"
         words = [program, "--listen", "127.0.0.1:0", "--web", "127.0.0.1:0", "--start", "none", "--store", "none"]
-        words += ["--spool", self._folder.name, "--max-sessions", "1000", "--pause-minutes", "0"]
+        words += ["--spool", self._folder, "--max-sessions", "1000", "--pause-minutes", "0"]
         words += ["--data", str(data)] if data else []
         words += [word for origin in notebook_origins() for word in ("--allow-origin", origin)]
         self._words = [*_tied(), *words, *flags]
@@ -58,15 +60,28 @@ class Process:
         assert self._process is not None
         return self._process.pid
 
+    @property
+    def runs(self) -> bool:
+        """True until the server has ended, or is ending. Requires: this process started it."""
+        if self._process is None or self._process.returncode is not None:
+            return False
+        try:  # not poll(), which is late: it leaves the end to the thread that waits, and until every thread has ended
+            status = Path(f"/proc/{self._process.pid}/stat").read_text()
+        except OSError:
+            return False
+        return status.rpartition(")")[2].split()[0] not in "ZX"
+
     def stop(self) -> None:
-        """Ends the server and removes its folder. A second call has no effect."""
+        """Ends the server and removes its folder. A second call has no effect, nor has one by a forked process."""
+        if self._parent != os.getpid():
+            return
         if self._process is not None and self._process.poll() is None:
             self._process.terminate()
             try:
                 self._process.wait(15)
             except subprocess.TimeoutExpired:
                 self._process.kill()
-        self._folder.cleanup()
+        shutil.rmtree(self._folder, ignore_errors=True)
 
     def _keep(self) -> None:
         # Settings of a server that the user runs elsewhere are not this one's.
@@ -95,7 +110,7 @@ class Process:
             time.sleep(0.005)
         text = self.log.read_text(errors="replace").strip()
         self.stop()
-        raise Unavailable(f"phrenicd did not start: {text}")
+        raise NotStarted(f"phrenicd did not start: {text or 'it ended without a word; is it the right program?'}")
 
 
 def notebook_origins() -> list[str]:

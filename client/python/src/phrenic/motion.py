@@ -19,6 +19,7 @@ from typing import Any, Iterable, Optional, Sequence, Union
 
 import numpy as np
 
+from .arguments import new_file
 from .errors import InvalidArgument
 from .frame import Frame
 from .optional import need
@@ -51,7 +52,9 @@ class Motion:
     def of(cls, frames: Iterable[Frame], bodies: Optional[Sequence[str]] = None, **attributes: Any) -> "Motion":
         """Returns the motion of these frames. `bodies`: names; default: all that the frames have. `attributes`: noted as
         they are, such as scene=session.scene. InvalidArgument if there is no frame."""
-        frames = list(frames)
+        frames = list(frames) if isinstance(frames, Iterable) else [frames]
+        if not all(isinstance(frame, Frame) for frame in frames):
+            raise InvalidArgument("frames: give frames of Session.play(), or a list of them")
         if not frames:
             raise InvalidArgument("frames: a motion needs one at least")
         names = frames[0].bodies if bodies is None else list(bodies)
@@ -79,15 +82,22 @@ class Motion:
         self.to_xarray().to_zarr(str(path), mode="w")
 
     def to_netcdf(self, path: Union[str, Path]) -> None:
-        """Writes a NetCDF 3 file, which xarray.open_dataset reads. Requires: scipy is installed; xarray is not needed."""
+        """Writes a NetCDF 3 file, which xarray.open_dataset reads; text is UTF-8. A file that is there is replaced once the
+        new one is whole. Requires: scipy is installed; xarray is not needed."""
         scipy_io = need("scipy.io", "to_netcdf", "apt install python3-scipy, or pip install scipy")
-        with scipy_io.netcdf_file(str(path), "w", version=2) as file:
-            for name, value in self.attributes.items():
-                if hasattr(file, name):
-                    raise InvalidArgument(f"attributes: {name} has another meaning in NetCDF: choose another name")
-                setattr(file, name, value)
-            for name, variable in {**self.coordinates, **self.variables}.items():
-                _write(file, name, variable)
+        target = new_file("path", path)
+        part = target.with_name(target.name + ".part")
+        try:
+            with scipy_io.netcdf_file(str(part), "w", version=2) as file:
+                for name, value in self.attributes.items():
+                    if hasattr(file, name):
+                        raise InvalidArgument(f"attributes: {name} has another meaning in NetCDF: choose another name")
+                    setattr(file, _ascii(name), _attribute(name, value))
+                for name, variable in {**self.coordinates, **self.variables}.items():
+                    _write(file, _ascii(name), variable)
+            part.replace(target)
+        finally:
+            part.unlink(missing_ok=True)
 
 
 def to_xarray(frames: Iterable[Frame], bodies: Optional[Sequence[str]] = None, **attributes: Any) -> Any:
@@ -149,6 +159,25 @@ def _add(variables: dict[str, Variable], name: str, variable: Variable) -> None:
     variables[name] = variable
 
 
+def _ascii(name: str) -> str:
+    """Returns the name. InvalidArgument if scipy cannot write it."""
+    if not name.isascii():
+        raise InvalidArgument(f"attributes, bodies: {name!r} is not ASCII, as scipy's NetCDF has names: choose another")
+    return name
+
+
+def _attribute(name: str, value: Any) -> Any:
+    """Returns an attribute as NetCDF 3 has it: a text, a number or numbers of 32 bits. InvalidArgument for others."""
+    if isinstance(value, str):
+        return value.encode("utf-8")
+    numbers = np.asarray(value)
+    if numbers.dtype.kind in "iu" and numbers.size and not (np.abs(numbers.astype(float)) < 2**31).all():
+        numbers = numbers.astype(float)
+    if numbers.dtype.kind not in "iuf" or numbers.ndim > 1:
+        raise InvalidArgument(f"attributes: {name}: {value!r} is neither a text, nor a number or a list of numbers")
+    return numbers.astype(np.int32 if numbers.dtype.kind in "iu" else np.float64)
+
+
 def _write(file: Any, name: str, variable: Variable) -> None:
     """Adds a variable to a file of scipy's. Text is an array of characters, as NetCDF 3 has it."""
     values, dims = variable.values, variable.dims
@@ -163,4 +192,4 @@ def _write(file: Any, name: str, variable: Variable) -> None:
     made = file.createVariable(name, kind, dims)
     made[:] = values
     for key, value in variable.attributes.items():
-        setattr(made, key, value)
+        setattr(made, key, value.encode("utf-8"))

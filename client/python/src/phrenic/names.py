@@ -18,6 +18,7 @@ from typing import Any, Iterable, Mapping, TypeVar
 from google.protobuf.descriptor import EnumDescriptor, FieldDescriptor
 from google.protobuf.message import Message
 
+from .arguments import mapping, text_of
 from .errors import InvalidArgument, NotFound
 
 M = TypeVar("M", bound=Message)
@@ -36,7 +37,25 @@ def look_up(table: Mapping[str, Any], name: str, what: str) -> Any:
     """Returns table[name]. NotFound names the nearest or the existing ones."""
     if name in table:
         return table[name]
+    text_of(what, name)
     raise NotFound(f"there is no {what} {name}: {nearest(name, table)}")
+
+
+class Named(dict[str, Any]):
+    """Values by name. A name that is not there is a KeyError with the nearest one.
+
+    >>> Named({"hd95_max": 1.0}, "distance")["hd95"]
+    Traceback (most recent call last):
+        ...
+    KeyError: 'there is no distance hd95: did you mean hd95_max?'
+    """
+
+    def __init__(self, values: Mapping[str, Any], what: str) -> None:
+        super().__init__(values)
+        self._what = what
+
+    def __missing__(self, name: Any) -> Any:
+        raise KeyError(f"there is no {self._what} {name}: {nearest(str(name), self)}")
 
 
 def is_repeated(field: FieldDescriptor) -> bool:
@@ -73,22 +92,28 @@ def enum_name(enum: EnumDescriptor, number: int) -> str:
 def fill(message: M, fields: Mapping[str, Any], what: str = "option") -> M:
     """Sets fields of `message` and returns it. None leaves a field unset. InvalidArgument for an unknown field or a
     value of another type; ranges are checked by the server."""
-    for name, value in fields.items():
-        field = message.DESCRIPTOR.fields_by_name.get(name)
+    for name, value in mapping(what, fields).items():
+        field = message.DESCRIPTOR.fields_by_name.get(text_of(what, name))
         if field is None:
             raise InvalidArgument(f"there is no {what} {name}: {nearest(name, message.DESCRIPTOR.fields_by_name)}")
         if value is None:
             continue
         try:
             _set(message, field, value)
+        except InvalidArgument as error:
+            raise InvalidArgument(f"{name}: {error.message}") from None
         except TypeError as error:
             raise InvalidArgument(f"{name}: {value!r} is of the wrong type: {error}") from None
+        except (ValueError, OverflowError) as error:
+            raise InvalidArgument(f"{name}: {value!r} is outside the range of its type: {error}") from None
     return message
 
 
 def _set(message: Message, field: FieldDescriptor, value: Any) -> None:
     convert = (lambda v: enum_number(field.enum_type, v)) if field.enum_type else (lambda v: v)
     if is_repeated(field):
+        if isinstance(value, str):  # its letters would be taken one by one
+            raise InvalidArgument(f"give a list: [{value!r}]")
         getattr(message, field.name).extend(convert(each) for each in value)
     else:
         setattr(message, field.name, convert(value))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import uuid
 import warnings
 from functools import lru_cache
@@ -12,11 +13,12 @@ from typing import Any, Iterable, Iterator, Mapping, Optional, Sequence, Union
 import numpy as np
 from google.protobuf import text_format
 
-from .call import LONG, Call, Operation
+from .arguments import INT32, finite, mapping, names_of, positive, text_of, vector, whole
+from .call import LONG, Call, Operation, T, new_id
 from .codec import Decoder
-from .errors import Aborted, InvalidArgument, NotFound, Unavailable
+from .errors import Aborted, AlreadyExists, Cancelled, Closed, DeadlineExceeded, Error, InvalidArgument, NotFound, Unavailable
 from .frame import Frame, Geometry, frame_of, watched_frame
-from .names import enum_number, fill, look_up, row
+from .names import Named, enum_names, enum_number, fill, look_up, nearest, row
 from .table import Table
 from .v1 import frames_pb2, parameters_pb2, samples_pb2, scene_pb2, session_pb2, state_pb2
 
@@ -33,7 +35,10 @@ class SimulationWarning(UserWarning):
 
 def source_of(scene: Scene, resolution_mm: Optional[float] = None) -> session_pb2.SceneSource:
     """Returns the scene as requests name it. InvalidArgument names the line of a scene text that cannot be parsed."""
-    source = session_pb2.SceneSource(resolution_mm=resolution_mm)
+    edge = None if resolution_mm is None else finite("resolution_mm", resolution_mm)
+    source = session_pb2.SceneSource(resolution_mm=edge)
+    if not isinstance(scene, (str, Path, scene_pb2.Scene)):
+        raise InvalidArgument(f"scene: {scene!r} is neither a name, nor a .textproto file, nor a Scene")
     if isinstance(scene, scene_pb2.Scene):
         source.scene.CopyFrom(scene)
     elif str(scene).endswith(".textproto"):
@@ -48,23 +53,37 @@ def source_of(scene: Scene, resolution_mm: Optional[float] = None) -> session_pb
 
 def parameters_of(values: Optional[Mapping[str, Any]]) -> parameters_pb2.Parameters:
     """Returns live parameters. InvalidArgument for an unknown name, with the nearest one."""
-    return fill(parameters_pb2.Parameters(), values or {}, "parameter")
+    return fill(parameters_pb2.Parameters(), mapping("set", values), "parameter")
+
+
+def parts_of(read: Sequence[str]) -> tuple[int, ...]:
+    """Returns the parts of the state by name. InvalidArgument names the nearest one."""
+    return _parts_of(tuple(names_of("read", read)))
 
 
 @lru_cache
-def parts_of(read: tuple[str, ...]) -> tuple[int, ...]:
-    """Returns the parts of the state by name. InvalidArgument names the nearest one."""
+def _parts_of(read: tuple[str, ...]) -> tuple[int, ...]:
+    known = enum_names(state_pb2.StatePart.DESCRIPTOR)
+    for part in read:
+        if part not in known:
+            raise InvalidArgument(f"read: there is no part {part}: {nearest(part, known)}")
     return tuple(enum_number(state_pb2.StatePart.DESCRIPTOR, part) for part in read)
 
 
 class SessionOperations:
     """Knows one session: its id, last status and geometry. Not thread-safe."""
 
+    _level = 6
+    """Of the frame of a method's caller, seen from an operation."""
+
     def __init__(self, session: session_pb2.Session, token: str, owned: bool) -> None:
         self.status = session
         self._token = token
         self._owned = owned
         self._closed = False
+        self._process = os.getpid()
+        self._unsettled = False  # a call that steps was cut off, and the server may be at a later tick than seen
+        self._stream: Any = None  # of steps (advance.py)
         self._geometry: Optional[Geometry] = None
         self._layout: Optional[state_pb2.StateLayout] = None
         self._last: Optional[Frame] = None
@@ -93,7 +112,7 @@ class SessionOperations:
     @property
     def parameters(self) -> dict[str, Any]:
         """Every live parameter, as last seen; enums by their lower-case names."""
-        return row(self.status.parameters)
+        return Named(row(self.status.parameters), "parameter")
 
     @property
     def time_step(self) -> float:
@@ -103,13 +122,40 @@ class SessionOperations:
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.id} of {self.scene} at tick {self.tick}>"
 
+    # --- every call ---
+    def _check_open(self) -> None:
+        """Closed after close()."""
+        if self._closed:
+            raise Closed(f"the session {self.id} is closed: make another by phrenic.Session")
+
+    def _ready(self, operation: Operation[T]) -> Operation[T]:
+        """Performs an operation of an open session, once a step that was cut off has ended."""
+        self._check_open()
+        if self._unsettled:
+            yield from self._settle()
+        return (yield from operation)
+
+    def _settle(self) -> Operation[None]:
+        """Ends what a call that was cut off left on the server, and takes over the tick that it reached. A session that
+        others step is not stopped."""
+        if self._owned:
+            yield from self._change("PauseSession", session_pb2.PauseSessionRequest())
+        else:
+            self.status = yield from attach(self.id)
+        self._last, self._unsettled = None, False
+
+    def _leave_stream(self) -> None:
+        """Ends a stream of steps whose loop was left while answers were pending."""
+        if self._stream is not None and self._stream.pending:
+            self._stream.leave()
+
     # --- reading ---
     def _describe(self, parts: Iterable[int]) -> Operation[None]:
         """Reads what is constant and belongs to these parts, once."""
         if self._geometry is None and state_pb2.STATE_PART_BODIES in parts:
             bodies: list[frames_pb2.GetGeometryResponse] = []
             request = frames_pb2.GetGeometryRequest(session_id=self.id)
-            yield Call("FrameService.GetGeometry", request, LONG, bodies.append, repeatable=False)
+            yield Call("FrameService.GetGeometry", request, LONG, bodies.append)
             self._geometry = Geometry(bodies)
         if self._layout is None and any(part != state_pb2.STATE_PART_BODIES for part in parts):
             answer = yield Call("SessionService.GetState", self._state_request([state_pb2.STATE_PART_LAYOUT]))
@@ -126,7 +172,7 @@ class SessionOperations:
         return self._last
 
     def _read(self, read: Sequence[str]) -> Operation[Frame]:
-        parts = parts_of(tuple(read))
+        parts = parts_of(read)
         yield from self._describe(parts)
         answer = yield Call("SessionService.GetState", self._state_request(parts))
         return self._frame_of(answer.state, answer, parts)
@@ -150,7 +196,9 @@ class SessionOperations:
         return (yield from self._known()).state_hash
 
     def _forces(self, body: str, vertex: Optional[int], kind: str) -> Operation[Any]:
-        request = frames_pb2.GetForcesRequest(session_id=self.id, body=body, vertex=vertex, kind=kind)
+        request = frames_pb2.GetForcesRequest(session_id=self.id, body=text_of("body", body), kind=text_of("kind", kind))
+        if vertex is not None:
+            request.vertex = whole("vertex", vertex, most=INT32)
         answer = yield Call("FrameService.GetForces", request)
         if kind:
             return np.frombuffer(answer.sizes, "<f4")
@@ -163,7 +211,11 @@ class SessionOperations:
         self, ticks: int, read: Sequence[str], timeout: Optional[float], again: bool = True
     ) -> Operation[Frame]:
         """Takes steps. `again`: those that a lost connection left out are taken once more."""
-        parts = parts_of(tuple(read))
+        parts, ticks = parts_of(read), whole("ticks", ticks)
+        deadline = LONG if timeout is None else positive("timeout", timeout)
+        self._leave_stream()
+        if self._unsettled:
+            yield from self._settle()
         yield from self._describe(parts)
         before = self.status.tick
         request = session_pb2.StepSessionRequest(
@@ -172,11 +224,15 @@ class SessionOperations:
         if self._owned:
             request.expected_tick = before
         try:
-            answer = yield Call("SessionService.StepSession", request, timeout or LONG, repeatable=False)
+            answer = yield Call("SessionService.StepSession", request, deadline, repeatable=False)
         except Unavailable:
             if not self._owned or not again:
+                self._unsettled = True
                 raise
             return (yield from self._step_to(before, before + ticks, read, timeout))
+        except BaseException as failed:  # also Ctrl-C: the server may step on
+            self._unsettled |= isinstance(failed, (DeadlineExceeded, Cancelled)) or not isinstance(failed, Error)
+            raise
         self.status = answer.session
         arrays = answer.state if parts else state_pb2.StateArrays(tick=self.tick, time=self.time, phase=math.nan)
         return self._frame_of(arrays, answer, parts)
@@ -193,10 +249,11 @@ class SessionOperations:
 
     def ticks_until(self, time: float) -> int:
         """Number of steps to the simulated time [s], rounded; at least 1."""
-        return max(1, round((time - self.time) / self.time_step))
+        return max(1, round((finite("time", time) - self.time) / self.time_step))
 
     def _frame_ticks(self, seconds: float, fps: float) -> list[int]:
         """Steps to each frame from the one before, as play() takes them at an unchanged time step."""
+        seconds, fps = positive("seconds", seconds), positive("fps", fps)
         count, step = max(1, round(seconds * fps)), self.time_step
         reached, ticks = 0, []
         for i in range(1, count + 1):
@@ -208,6 +265,7 @@ class SessionOperations:
 
     def _frame_times(self, seconds: float, fps: float) -> Iterator[float]:
         """Times of frames from now on that a step can reach [s]."""
+        seconds, fps = positive("seconds", seconds), positive("fps", fps)
         start = self.time
         for i in range(1, max(1, round(seconds * fps)) + 1):
             if self.time < start + i / fps - 0.5 * self.time_step:
@@ -226,16 +284,18 @@ class SessionOperations:
 
     def _set(self, preset: str, at_tick: Optional[int], values: Mapping[str, Any]) -> Operation[None]:
         request = session_pb2.UpdateParametersRequest(
-            parameters=parameters_of(values), preset=preset, apply_at_tick=at_tick
+            parameters=parameters_of(values),
+            preset=text_of("preset", preset),
+            apply_at_tick=None if at_tick is None else whole("at_tick", at_tick),
         )
         answer = yield from self._change("UpdateParameters", request)
         for text in answer.warnings:
-            warnings.warn(text, SimulationWarning, stacklevel=5)
+            warnings.warn(text, SimulationWarning, stacklevel=self._level)
 
     def _pull(self, body: str, vertex: int, force: Sequence[float]) -> Operation[None]:
         request = session_pb2.PullSessionRequest()
-        pull = request.pulls.add(body=body, vertex=vertex)
-        pull.force.x, pull.force.y, pull.force.z = force
+        pull = request.pulls.add(body=text_of("body", body), vertex=whole("vertex", vertex, most=INT32))
+        pull.force.x, pull.force.y, pull.force.z = vector("force", force)
         yield from self._change("PullSession", request)
 
     def _release(self) -> Operation[None]:
@@ -245,7 +305,11 @@ class SessionOperations:
         yield from self._change("ResetSession", session_pb2.ResetSessionRequest())
 
     def _run_on(self, speed: Optional[float], until: float) -> Operation[None]:
-        request = session_pb2.PlaySessionRequest(speed=speed, until_time=until, as_fast_as_possible=speed == 0)
+        request = session_pb2.PlaySessionRequest(
+            speed=None if speed is None else finite("speed", speed),
+            until_time=finite("until", until),
+            as_fast_as_possible=speed == 0,
+        )
         if speed == 0:
             request.ClearField("speed")
         yield from self._change("PlaySession", request)
@@ -254,18 +318,26 @@ class SessionOperations:
         yield from self._change("PauseSession", session_pb2.PauseSessionRequest())
 
     def _fork(self, fork_id: str) -> Operation[session_pb2.ForkSessionResponse]:
-        request = session_pb2.ForkSessionRequest(session_id=self.id, fork_id=fork_id)
-        return (yield Call("SessionService.ForkSession", request, LONG, repeatable=False))
+        """Forks. A fork of this client's choice of id is made once, however often the call is repeated."""
+        request = session_pb2.ForkSessionRequest(session_id=self.id, fork_id=text_of("id", fork_id) or new_id(self.scene))
+        try:
+            return (yield Call("SessionService.ForkSession", request, LONG))
+        except AlreadyExists:
+            if fork_id:
+                raise
+            return session_pb2.ForkSessionResponse(session=(yield from _made_before(request.fork_id)))
 
     def _delete(self) -> Operation[None]:
         if self._closed:
             return
         self._closed = True
+        if self._process != os.getpid():
+            return  # the session is that of the process from which this one was forked
         request = session_pb2.DeleteSessionRequest(session_id=self.id, control_token=self._token)
         try:
             yield Call("SessionService.DeleteSession", request, repeatable=False)
-        except (NotFound, Unavailable):
-            pass  # it has ended already
+        except (NotFound, Unavailable, Closed):
+            pass  # it has ended already, or ends with its server
 
     # --- watching ---
     def _watch_call(self, max_fps: float, max_error_mm: Optional[float]) -> Call:
@@ -273,12 +345,16 @@ class SessionOperations:
         if max_error_mm is not None and self._decoder is None and self._geometry is not None:
             self._decoder = Decoder(self._geometry.bodies.values())
         request = frames_pb2.WatchFramesRequest(
-            session_id=self.id, max_fps=max_fps, codec=codec, max_error_mm=max_error_mm, watch_id=str(uuid.uuid4())
+            session_id=self.id, max_fps=finite("max_fps", max_fps), codec=codec, watch_id=str(uuid.uuid4())
         )
+        if max_error_mm is not None:
+            request.max_error_mm = finite("max_error_mm", max_error_mm)
         return Call("FrameService.WatchFrames", request)
 
     def _samples_call(self, measures: Sequence[str], interval: float) -> Call:
-        request = samples_pb2.WatchSamplesRequest(session_id=self.id, measures=measures, interval=interval)
+        request = samples_pb2.WatchSamplesRequest(
+            session_id=self.id, measures=names_of("measures", measures), interval=finite("interval", interval)
+        )
         return Call("SampleService.WatchSamples", request)
 
     def _noted(self, event: frames_pb2.WatchFramesResponse) -> Optional[Frame]:
@@ -300,11 +376,39 @@ def create(
     id: str,
     resolution_mm: Optional[float],
 ) -> Operation[session_pb2.CreateSessionResponse]:
-    """Creates a session."""
+    """Creates a session. Without `id`, this client chooses one, so that a repeat after a lost connection makes no second
+    session; with one, a repeat that finds the session made is AlreadyExists."""
     request = session_pb2.CreateSessionRequest(
-        session_id=id, source=source_of(scene, resolution_mm), parameters=parameters_of(set), preset=preset
+        session_id=text_of("id", id) or new_id(Path(str(getattr(scene, "name", scene))).stem),
+        source=source_of(scene, resolution_mm),
+        parameters=parameters_of(set),
+        preset=text_of("preset", preset),
     )
-    return (yield Call("SessionService.CreateSession", request, LONG, repeatable=False))
+    try:
+        return (yield Call("SessionService.CreateSession", request, LONG))
+    except AlreadyExists:
+        if id:
+            raise
+        return session_pb2.CreateSessionResponse(session=(yield from _made_before(request.session_id)))
+    except BaseException as failed:
+        if not id and (isinstance(failed, DeadlineExceeded) or not isinstance(failed, Error)):  # Ctrl-C: it may be made
+            yield from _unmade(request.session_id)
+        raise
+
+
+def _made_before(id: str) -> Operation[session_pb2.Session]:
+    """Returns the session that a call made whose answer was lost, once it is there: it may be compiling. Its control
+    token is lost; everybody may change a session that is not under control, as this one is."""
+    request = session_pb2.GetSessionRequest(session_id=id)
+    return (yield Call("SessionService.GetSession", request, passing=(NotFound,))).session
+
+
+def _unmade(id: str) -> Operation[None]:
+    """Deletes the session that a call made which was cut off, if it did."""
+    try:
+        yield Call("SessionService.DeleteSession", session_pb2.DeleteSessionRequest(session_id=id), repeatable=False)
+    except Error:
+        pass
 
 
 def describe(scene: Scene, resolution_mm: Optional[float]) -> Operation[session_pb2.DescribeSceneResponse]:
@@ -332,5 +436,13 @@ def session_ids() -> Operation[list[str]]:
 
 def attach(id: str) -> Operation[session_pb2.Session]:
     """Returns the status of an existing session."""
-    answer = yield Call("SessionService.GetSession", session_pb2.GetSessionRequest(session_id=id))
+    answer = yield Call("SessionService.GetSession", session_pb2.GetSessionRequest(session_id=text_of("id", id)))
     return answer.session
+
+
+def check_server(server: Any, asynchronous: bool = False) -> None:
+    """InvalidArgument if `server` is none of this client."""
+    if asynchronous == getattr(getattr(server, "connection", None), "asynchronous", None):
+        return
+    maker = "phrenic.aio.connect" if asynchronous else "phrenic.connect"
+    raise InvalidArgument(f"server: {server!r} is none: give that of {maker}(address)")

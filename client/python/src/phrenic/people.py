@@ -10,11 +10,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Union
 
+from .arguments import INT32, mapping, text_of, whole
 from .call import LONG, Call, Operation
 from .errors import InvalidArgument
 from .fits import Landmarks, landmark_files
 from .jobs import Progress
-from .operations import Scene, source_of
+from .operations import Scene, check_server, source_of
 from .table import Table
 from .v1 import fit_pb2, session_pb2
 
@@ -56,6 +57,7 @@ def study(
         from .server import default_server
 
         server = default_server()
+    check_server(server)
     return server.connection.run(studied(source_of(scene, resolution_mm), cases, modes, split, progress))
 
 
@@ -68,15 +70,15 @@ def studied(
 ) -> Operation[MotionStudy]:
     """The operation of study()."""
     given = _in_folder(Path(cases)) if isinstance(cases, (str, Path)) else cases
-    request = fit_pb2.StudyMotionRequest(source=source, modes=modes, split=split)
-    for name, landmarks in given.items():
-        request.cases.add(name=name, landmarks=landmark_files(landmarks))
-    people: list[fit_pb2.MotionOfPerson] = []
+    request = fit_pb2.StudyMotionRequest(source=source, modes=whole("modes", modes, most=INT32), split=whole("split", split, most=INT32))
+    for name, landmarks in mapping("cases", given).items():
+        request.cases.add(name=text_of("cases", name), landmarks=landmark_files(landmarks))
+    people: dict[str, fit_pb2.MotionOfPerson] = {}  # by name: a call that is repeated brings them again
     last: list[fit_pb2.MotionOfPeople] = []
 
     def note(event: fit_pb2.StudyMotionResponse) -> None:
         if event.HasField("person"):
-            people.append(event.person)
+            people[event.person.name] = event.person
         elif event.HasField("people"):
             last.append(event.people)
         elif progress:
@@ -85,7 +87,8 @@ def studied(
     yield Call("FitService.StudyMotion", request, LONG, note)
     together = last[-1]
     one = together.from_one_number.mean_mm if together.HasField("from_one_number") else None
-    return MotionStudy(Table(map(_row, people)), together.held_out.mean_mm, one, people, together)
+    each = list(people.values())
+    return MotionStudy(Table(map(_row, each)), together.held_out.mean_mm, one, each, together)
 
 
 def _row(person: fit_pb2.MotionOfPerson) -> dict[str, Any]:

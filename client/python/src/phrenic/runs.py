@@ -15,10 +15,11 @@ from typing import Any, Container, Iterable, Iterator, Mapping, Optional, Sequen
 
 import numpy as np
 
+from .arguments import INT32, names_of, positive, text_of, whole
 from .call import Call, delay_before_repeat
 from .errors import Error, InvalidArgument, ResourceExhausted, Unavailable
 from .frame import Frame, State, vectors
-from .operations import Scene, parameters_of, parts_of, source_of
+from .operations import Scene, check_server, parameters_of, parts_of, source_of
 from .server import Server, default_server
 from .v1 import batch_pb2, state_pb2
 
@@ -75,7 +76,7 @@ def batch(
     preset: str = "",
     resolution_mm: Optional[float] = None,
     start: Union[Frame, State, None] = None,
-    starts: Optional[Iterable[State]] = None,
+    starts: Optional[Iterable[Union[Frame, State]]] = None,
     read: Sequence[str] = (),
     summary: bool = False,
     threads: Optional[int] = None,
@@ -91,8 +92,10 @@ def batch(
     "positions", "velocities" and "scalars". `summary`: instead of samples, the range of each measure, and an end at the first
     step that reaches `seconds`. A loop that breaks ends the runs in progress; `finished`, the indices of the
     runs that it had, lets another call with the same arguments run the rest. After a lost connection the batch goes on by
-    itself with the runs that are missing; Unavailable once `retries` attempts have given none."""
-    connection = (server or default_server()).connection
+    itself with the runs that are missing; Unavailable once `retries` attempts, a minute, have given none."""
+    server = server or default_server()
+    check_server(server)
+    connection = server.connection
     request = request_of(scene, seconds, fps, preset, resolution_mm, read, summary, threads)
     for part in parts(request, parameters, start, starts, finished, connection.target.retries):
         while not part.ended:
@@ -116,8 +119,9 @@ def request_of(
 ) -> batch_pb2.RunBatchRequest:
     """Returns the request without its runs."""
     return batch_pb2.RunBatchRequest(
-        source=source_of(scene, resolution_mm), preset=preset, seconds=seconds, frames_per_second=fps,
-        threads=threads or 0, read=_parts(read), summary=summary,
+        source=source_of(scene, resolution_mm), preset=text_of("preset", preset), seconds=positive("seconds", seconds),
+        frames_per_second=positive("fps", fps), threads=whole("threads", threads or 0, most=INT32), read=_parts(read),
+        summary=bool(summary),
     )  # fmt: skip
 
 
@@ -163,7 +167,7 @@ def parts(
     request: batch_pb2.RunBatchRequest,
     parameters: Iterable[Mapping[str, Any]],
     start: Union[Frame, State, None],
-    starts: Optional[Iterable[State]],
+    starts: Optional[Iterable[Union[Frame, State]]],
     finished: Container[int],
     retries: int,
 ) -> Iterator[Part]:
@@ -175,9 +179,13 @@ def parts(
     while True:
         block, size = [], 0
         del request.runs[:], request.finished[:]
+        if not isinstance(finished, Container):
+            raise InvalidArgument(f"finished: {finished!r} has no indices of runs: give a set")
         for each, state in values:
             index = begin + len(block)
             try:
+                if not isinstance(each, Mapping):
+                    raise InvalidArgument(f"{each!r} is not a dict of parameters; of a DataFrame: df.to_dict('records')")
                 request.runs.add(parameters=parameters_of(each), start=None if state is None else _arrays_of(state))
             except InvalidArgument as error:
                 raise InvalidArgument(f"runs[{index}]: {error.message}") from None
@@ -194,29 +202,36 @@ def parts(
 
 
 def _with_starts(
-    parameters: Iterable[Mapping[str, Any]], start: Union[Frame, State, None], starts: Optional[Iterable[State]]
+    parameters: Iterable[Mapping[str, Any]], start: Union[Frame, State, None], starts: Optional[Iterable[Union[Frame, State]]]
 ) -> Iterator[tuple[Mapping[str, Any], Optional[State]]]:
     """Yields each run's parameters with its start. InvalidArgument if there are fewer starts than runs."""
     if start is not None and starts is not None:
         raise InvalidArgument("start: give it or starts, not both")
-    states = iter(starts) if starts is not None else repeat(start.state if isinstance(start, Frame) else start)
-    for index, each in enumerate(parameters):
+    states: Iterator[Any] = repeat(start)
+    try:
+        runs = iter(parameters)
+        if starts is not None:
+            states = iter(starts)
+    except TypeError as error:
+        raise InvalidArgument(f"parameters, starts: give lists with an item a run: {error}") from None
+    for index, each in enumerate(runs):
         try:
-            yield each, next(states)
+            state = next(states)
+            yield each, state.state if isinstance(state, Frame) else state
         except StopIteration:
             raise InvalidArgument(f"starts: runs[{index}] has none: give a state for each run") from None
 
 
 def _parts(read: Sequence[str]) -> tuple[int, ...]:
-    if isinstance(read, str):
-        raise InvalidArgument(f'read: give names in a tuple: ("{read}",)')
-    if "bodies" in read:
+    if "bodies" in names_of("read", read):
         raise InvalidArgument('read: "bodies" come with frames of a session; name "positions"')
     return parts_of(tuple(read))
 
 
 def _arrays_of(state: State) -> state_pb2.StateArrays:
     """Returns the state as the server takes it."""
+    if not isinstance(state, State):
+        raise InvalidArgument(f"start: {type(state).__name__} is neither a Frame nor a State")
     if state.positions is None or state.velocities is None or state.scalars is None or state.scalar_rates is None:
         raise InvalidArgument('start: the state lacks a part: read ("positions", "velocities", "scalars")')
     numbers = (np.asarray(each, "<f8").tobytes() for each in

@@ -8,7 +8,8 @@ import threading
 from pathlib import Path
 from typing import Any, Optional, Sequence, Union
 
-from .call import Call, one
+from .arguments import names_of
+from .call import FIRST, RETRIES, Call, one
 from .connection import Channel, Connection, Tls, target_of
 from .local import Process, binary
 from .operations import Scene, SessionOperations, attach, describe, scenes, session_ids
@@ -47,7 +48,12 @@ class Server(ServerFacts):
 
     def __init__(self, connection: Connection) -> None:
         self.connection = connection
-        self.about = connection.run(one(Call("ServerService.GetServer", server_pb2.GetServerRequest())))
+        request = server_pb2.GetServerRequest()
+        try:
+            self.about = connection.run(one(Call("ServerService.GetServer", request, repeats=FIRST)))
+        except BaseException:
+            connection.close()
+            raise
 
     def scenes(self) -> Table:
         """The catalogue: name, title, description, presets."""
@@ -84,11 +90,15 @@ class LocalServer(Server):
 
     def __init__(self, process: Process) -> None:
         self.process = process
-        super().__init__(Connection(target_of(process.address, retries=0)))
+        try:
+            super().__init__(Connection(target_of(process.address, retries=0)))
+        except BaseException:
+            process.stop()
+            raise
         atexit.register(self.close)
 
     def close(self) -> None:
-        """Ends the connection and the server."""
+        """Ends the connection and the server. A process that was forked from the one that started it does not end it."""
         atexit.unregister(self.close)
         super().close()
         self.process.stop()
@@ -100,12 +110,12 @@ def connect(
     token: Optional[str] = None,
     tls: Union[bool, str, Path, Tls, None] = None,
     timeout: float = 120,
-    retries: int = 5,
+    retries: int = RETRIES,
 ) -> Server:
     """Connects to a server that runs. `address`: HOST:PORT, or https://HOST:PORT with encryption. `token`: of an account;
     default PHRENIC_TOKEN. `tls`: True, a file of certificate authorities, or Tls(ca, cert, key). `timeout`: deadline of a
-    call that does not compute [s]. `retries`: how often a call is repeated while the server is unavailable; a change
-    takes effect once. Unavailable if no server answers.
+    call that does not compute [s]. `retries`: how often a call is repeated while the server is unavailable, for about a
+    minute by default; a change takes effect once. Unavailable if no server answers the first call within about 2 s.
 
     >>> connect("127.0.0.1:1", retries=0)
     Traceback (most recent call last):
@@ -126,7 +136,7 @@ def local(
     ...     "thorax" in server.scenes()["name"]
     True
     """
-    return LocalServer(Process(binary(program), flags, data))
+    return LocalServer(Process(binary(program), names_of("flags", flags), data))
 
 
 _default: Optional[Server] = None
@@ -134,10 +144,27 @@ _lock = threading.Lock()
 
 
 def default_server() -> Server:
-    """The server of sessions that name none: that of PHRENIC_SERVER, else one that is started at the first use."""
+    """The server of sessions that name none: that of PHRENIC_SERVER, else one that is started at the first use, and again
+    if it was closed or has crashed; sessions of the one before have ended with it. Thread-safe."""
     global _default
     with _lock:
+        if _default is not None and not _usable(_default):
+            _default.close()
+            _default = None
         if _default is None:
             address = os.environ.get("PHRENIC_SERVER", "")
             _default = connect(address) if address else local()
         return _default
+
+
+def _usable(server: Server) -> bool:
+    return not server.connection.closed and (not isinstance(server, LocalServer) or server.process.runs)
+
+
+def _forget_default() -> None:
+    """In a forked process: the parent has the server, and perhaps the lock."""
+    global _default, _lock
+    _default, _lock = None, threading.Lock()
+
+
+os.register_at_fork(after_in_child=_forget_default)

@@ -9,12 +9,13 @@ import grpc
 
 from . import jobs
 from .advance import Steps, frames_ahead
+from .arguments import whole
 from .call import T, Operation
 from .connection import Connection
 from .errors import error_of
 from .fits import Fit, Landmarks, fitted
 from .frame import Frame
-from .operations import EVERYTHING, Scene, SessionOperations, create, parts_of, source_of
+from .operations import EVERYTHING, Scene, SessionOperations, check_server, create, parts_of, source_of
 from .samples import Sample, SampleReader
 from .tissue import Tissue, tissue
 from .v1 import session_pb2, state_pb2
@@ -46,11 +47,12 @@ class Session(SessionOperations):
         server: Optional["Server"] = None,
     ) -> None:
         """`scene`: a name of the catalogue, a .textproto file or a Scene. `set`: live parameters by name. `id`: empty
-        for one of the server's choice."""
+        for a new one."""
         if server is None:
             from .server import default_server
 
             server = default_server()
+        check_server(server)
         self._connection = server.connection
         made = self._connection.run(create(scene, set, preset, id, resolution_mm))
         super().__init__(made.session, made.control_token, owned=True)
@@ -72,7 +74,7 @@ class Session(SessionOperations):
         return session
 
     def _do(self, operation: Operation[T]) -> T:
-        return self._connection.run(operation)
+        return self._connection.run(self._ready(operation))
 
     def __enter__(self) -> "Session":
         return self
@@ -88,8 +90,9 @@ class Session(SessionOperations):
 
     def close(self) -> None:
         """Deletes the session, unless it was joined by attach(). A second call has no effect."""
-        if self._owned:
-            self._do(self._delete())
+        if self._owned and not self._closed:
+            self._connection.run(self._delete())
+        self._closed = True
 
     # --- stepping ---
     def step(self, ticks: int = 1, read: Sequence[str] = EVERYTHING, timeout: Optional[float] = None) -> Frame:
@@ -100,7 +103,7 @@ class Session(SessionOperations):
     def advance(self, read: Sequence[str] = EVERYTHING) -> Steps:
         """Returns a stream of steps, a context manager: an answer for each step in order, steps sent ahead, parameters
         changed by the step that they begin with. Do not use other methods that step while answers are pending."""
-        self._do(self._describe(parts_of(tuple(read))))
+        self._do(self._describe(parts_of(read)))
         return Steps(self, self._connection, read)
 
     def play(
@@ -109,14 +112,14 @@ class Session(SessionOperations):
         """Steps and yields `fps` frames a simulated second, as fast as they are taken: none is ever dropped, and the
         same call gives the same frames. run() and watch() are for real time. `ahead`: frames that the server may compute
         before the loop asks for them, with the same bits, while the loop works with the last one; a change made in the
-        loop then takes effect after them, and a loop that is left leaves the session ahead.
+        loop then takes effect after them, and a loop that is left leaves the session up to so many frames ahead.
 
         >>> with Session("cube-springs") as s:
         ...     [round(frame.time, 2) for frame in s.play(seconds=0.2, fps=10)]
         [0.1, 0.2]
         """
-        if ahead != 0:
-            self._do(self._describe(parts_of(tuple(read))))
+        if whole("ahead", ahead) != 0:
+            self._do(self._describe(parts_of(read)))
             yield from frames_ahead(self, self._connection, self._frame_ticks(seconds, fps), read, ahead)
             return
         for time in self._frame_times(seconds, fps):
@@ -153,7 +156,8 @@ class Session(SessionOperations):
 
     # --- changing ---
     def set(self, preset: str = "", at_tick: Optional[int] = None, **parameters: Any) -> None:
-        """Changes live parameters, now or before the step from `at_tick`. Warns (SimulationWarning) of a time step above
+        """Changes live parameters, now or before the step from `at_tick`. A change that still waits for its tick belongs to
+        this session alone: fork() and export() leave it out. Warns (SimulationWarning) of a time step above
         the largest stable one.
 
         >>> with Session("cube-springs") as s:
@@ -177,7 +181,8 @@ class Session(SessionOperations):
         self._do(self._reset())
 
     def fork(self, id: str = "", **parameters: Any) -> "Session":
-        """Returns a new session that continues from the present state, with some parameters changed.
+        """Returns a new session that continues from the present state, with some parameters changed. Changes that wait
+        for their tick, set(at_tick=...), are not copied. After an error there is no new session.
 
         >>> with Session("cube-springs") as s, s.fork() as other:
         ...     s.step(20).state_hash == other.step(20).state_hash
@@ -185,8 +190,12 @@ class Session(SessionOperations):
         """
         made = self._do(self._fork(id))
         fork = Session._of(self._connection, made.session, made.control_token, True, self._source)
-        if parameters:
-            fork.set(**parameters)
+        try:
+            if parameters:
+                fork.set(**parameters)
+        except BaseException:
+            fork.close()
+            raise
         return fork
 
     # --- real time ---
@@ -219,6 +228,7 @@ class Session(SessionOperations):
         """Yields the session's measures, all or those named, at every `interval` of simulated time, whichever client steps it:
         none is dropped unless the loop falls 4096 samples behind, which Sample.left_out says. Begins with the next
         multiple of the interval. Ends by `break`."""
+        self._check_open()
         batches = self._connection.open(self._samples_call(measures, interval))
         reader = SampleReader()
         try:
@@ -240,8 +250,8 @@ class Session(SessionOperations):
         **options: Any,
     ) -> dict[str, Any]:
         """Records a copy of the session from now on, `seconds` long, to a file: .msh, .depl, .pvd, .glb, .csv, or
-        .html, a page that plays one breath if `seconds` is 0. The session itself does not move. `options`: those of
-        CreateExportRequest, such as steps_per_frame. Returns the summary: frames, vertices, state_hash at the end ..."""
+        .html, a page that plays one breath if `seconds` is 0. The session itself does not move, and changes that wait for
+        their tick are left out. `options`: those of CreateExportRequest, such as steps_per_frame. Returns the summary: frames, vertices, state_hash at the end ..."""
         fields = {"seconds": seconds, "frames_per_second": fps, "bodies": bodies, **options}
         return self._do(jobs.export(self.id, path, fields, progress))
 

@@ -84,7 +84,7 @@ except ImportError:
             """The environment itself."""
             return self
 
-        def close(self) -> None:
+        def close(self, **options: Any) -> None:
             """Ends the environment."""
 
         def __enter__(self) -> "VectorEnv":

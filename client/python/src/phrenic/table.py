@@ -42,8 +42,8 @@ class Table(Sequence[dict[str, Any]]):
 
     @property
     def columns(self) -> list[str]:
-        """The names of the columns."""
-        return list(self._rows[0]) if self._rows else []
+        """The names of the columns that any row has, in the order in which they come."""
+        return list(dict.fromkeys(name for each in self._rows for name in each))
 
     @overload
     def __getitem__(self, key: int) -> dict[str, Any]: ...
@@ -62,7 +62,7 @@ class Table(Sequence[dict[str, Any]]):
     def _column(self, name: str) -> np.ndarray:
         if name not in self.columns:
             raise KeyError(f"there is no column {name}: {nearest(name, self.columns)}")
-        column = [each[name] for each in self._rows]
+        column = [each.get(name) for each in self._rows]
         numbers = any(isinstance(value, float) for value in column)
         return np.array([np.nan if numbers and value is None else value for value in column])
 
@@ -90,8 +90,9 @@ class Table(Sequence[dict[str, Any]]):
         """
         text = io.StringIO(newline="")
         lines = csv.writer(text)
-        lines.writerow(self.columns)
-        lines.writerows([_csv_cell(r[name]) for name in self.columns] for r in self._rows)
+        names = self.columns
+        lines.writerow(names)
+        lines.writerows([_csv_cell(r.get(name)) for name in names] for r in self._rows)
         return _written(text.getvalue(), path)
 
     def to_json_lines(self, path: Union[str, Path, None] = None) -> str:
@@ -106,17 +107,19 @@ class Table(Sequence[dict[str, Any]]):
 
     def to_parquet(self, path: Union[str, Path]) -> None:
         """Writes an Apache Parquet file. Requires: pyarrow is installed."""
+        names = self.columns
         pyarrow = need("pyarrow", "to_parquet", "pip install pyarrow (Debian 12 has no package of it), or use to_csv")
         need("pyarrow.parquet", "to_parquet", "pip install pyarrow").write_table(
-            pyarrow.Table.from_pylist([{name: _plain(value) for name, value in r.items()} for r in self._rows]), path
+            pyarrow.Table.from_pylist([{name: _plain(r.get(name)) for name in names} for r in self._rows]), path
         )
 
     def __str__(self) -> str:
         if not self._rows:
             return "(no rows)"
-        cells = [[name for name in self.columns]] + [[_cell(r[name]) for name in self.columns] for r in self._rows]
-        widths = [max(len(line[i]) for line in cells) for i in range(len(self.columns))]
-        numeric = [self._has_numbers(name) for name in self.columns]
+        names = self.columns
+        cells = [names] + [[_cell(r.get(name)) for name in names] for r in self._rows]
+        widths = [max(len(line[i]) for line in cells) for i in range(len(names))]
+        numeric = [self._has_numbers(name) for name in names]
         return "\n".join(
             "  ".join(
                 text.rjust(width) if right else text.ljust(width) for text, width, right in zip(line, widths, numeric)
@@ -125,7 +128,7 @@ class Table(Sequence[dict[str, Any]]):
         )
 
     def _has_numbers(self, name: str) -> bool:
-        return any(isinstance(r[name], (int, float, np.number)) for r in self._rows)
+        return any(isinstance(r.get(name), (int, float, np.number)) for r in self._rows)
 
     def _repr_html_(self) -> str:
         """The table as notebooks show it."""
@@ -136,7 +139,7 @@ class Table(Sequence[dict[str, Any]]):
             return "".join(f'<{tag} style="text-align:{side}">{escape(text)}</{tag}>' for text, side in each)
 
         head = cells("th", self.columns)
-        body = "".join(f"<tr>{cells('td', (_cell(r[name]) for name in self.columns))}</tr>" for r in self._rows)
+        body = "".join(f"<tr>{cells('td', (_cell(r.get(name)) for name in sides))}</tr>" for r in self._rows)
         return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
     def __repr__(self) -> str:

@@ -65,7 +65,10 @@ class Task:
 
     def check(self, action: Any) -> np.ndarray:
         """Returns the action as an array. InvalidArgument if it is not in the space."""
-        numbers = np.asarray(action, np.float32)
+        try:
+            numbers = np.asarray(action, np.float32)
+        except (TypeError, ValueError):
+            numbers = np.full(0, np.nan, np.float32)
         if not self.action_space.contains(numbers):
             highest = ", ".join(f"{each.high:g}" for each in self.actions)
             raise InvalidArgument(f"action: {action} is not an array of {len(self.actions)} from 0 to {highest}")

@@ -14,6 +14,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from .arguments import rows_of
 from .call import LONG, Call, Operation
 from .errors import InvalidArgument
 from .operations import SessionOperations
@@ -137,7 +138,7 @@ def lattice_of(part: tissue_pb2.GetTissueResponse) -> Lattice:
 def read_tissue(session_id: str, lattices: Sequence[Lattice], points: Points) -> Operation[Tissue]:
     """The tissue now. `points`: at most 64 places at rest [m], (k, 3)."""
     request = tissue_pb2.ReadTissueRequest(session_id=session_id)
-    for x, y, z in np.asarray(points, float).reshape(-1, 3) if points is not None else ():
+    for x, y, z in rows_of("points", points, 3) if points is not None else ():
         request.points.add(x=x, y=y, z=z)
     answer = yield Call("TissueService.ReadTissue", request, LONG)
     lungs = {

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
+from .arguments import mapping, positive, whole
 from .errors import FailedPrecondition, InvalidArgument
 from .frame import State
 from .operations import Scene
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from .server import Server
 
 Seeds = Union[None, int, Sequence[Optional[int]]]
+Start = tuple[State, Mapping[str, float], str]
 PARTS = ("positions", "velocities", "scalars")
 
 
@@ -53,8 +55,8 @@ class BreathingVector(VectorEnv):
         server: Optional["Server"] = None,
     ) -> None:
         """`threads`: patients that the server simulates at a time; default: one a core."""
-        if num_envs < 1:
-            raise InvalidArgument("num_envs: choose at least 1")
+        num_envs = whole("num_envs", num_envs, least=1)
+        seconds, interval = positive("seconds", seconds), positive("interval", interval)
         if not 0 < interval <= seconds:
             raise InvalidArgument("interval: choose one above 0 and not above seconds")
         self.num_envs = num_envs
@@ -67,22 +69,20 @@ class BreathingVector(VectorEnv):
         self._randoms = [np.random.default_rng() for _ in range(num_envs)]
         self._episodes: list[Episode] = []
         self._done = np.zeros(num_envs, bool)
-        self._first: Optional[tuple[State, Mapping[str, float], str]] = None
+        self._rest: Start
 
     def reset(
         self, *, seed: Seeds = None, options: Optional[Mapping[str, Any]] = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Begins an episode of every patient. `seed`: one a patient, or that of the first, from which the others count
         up. `options`: live parameters of all patients."""
-        one = isinstance(seed, (int, np.integer))
-        seeds = [int(seed) + i for i in range(self.num_envs)] if one else list(seed or ())
-        if seeds and len(seeds) != self.num_envs:
-            raise InvalidArgument(f"seed: {len(seeds)} seeds for {self.num_envs} patients")
+        seeds = self._seeds_of(seed)
+        chosen = dict(mapping("options", options))
+        first = self._start_of(chosen)  # from here on, nothing fails: an error above leaves the episodes as they were
         for i, each in enumerate(seeds):
             if each is not None:
                 self._randoms[i] = np.random.default_rng(each)
-        self._options = dict(options or {})
-        self._first = None
+        self._options, self._rest = chosen, first
         self._episodes = [self._begin(random) for random in self._randoms]
         self._states: list[State] = [self._rest[0]] * self.num_envs
         self._done[:] = False
@@ -95,18 +95,16 @@ class BreathingVector(VectorEnv):
         """Holds an action for an interval, for every patient. FailedPrecondition before reset()."""
         if not self._episodes:
             raise FailedPrecondition("no episode has begun: call reset() first")
-        numbers = [self.task.check(action) for action in np.asarray(actions, np.float32)]
-        if len(numbers) != self.num_envs:
-            raise InvalidArgument(f"actions: {len(numbers)} for {self.num_envs} patients")
+        going = [int(i) for i in np.flatnonzero(~self._done)]
+        numbers = self._actions_of(actions, going)
+        runs = self._simulate(going, numbers)  # an error leaves the episodes as they were
         rewards, terminated = np.zeros(self.num_envs), np.zeros(self.num_envs, bool)
         volumes, hashes = [self._rest[1]["lung volume"]] * self.num_envs, [self._rest[2]] * self.num_envs
         for i in np.flatnonzero(self._done):
             self._episodes[i], self._states[i] = self._begin(self._randoms[i]), self._rest[0]
             self._actions[i] = 0
             self._observations[i] = self._episodes[i].observe(self._rest[1], 0)
-        going = [int(i) for i in np.flatnonzero(~self._done)]
-        self._done[:] = False
-        for run in self._simulate(going, numbers):
+        for run in runs:
             i = going[run.index]
             rewards[i], terminated[i] = self._judge(i, run, numbers[i])
             volumes[i] = float(run.measures["lung volume"][-1]) if len(run.times) else volumes[i]
@@ -116,7 +114,35 @@ class BreathingVector(VectorEnv):
         self._done = terminated | truncated
         return self._observations.copy(), rewards, terminated, truncated, self._infos(volumes, hashes)
 
-    def _simulate(self, going: Sequence[int], actions: Sequence[np.ndarray]) -> list[Run]:
+    def close(self, **options: Any) -> None:
+        """Ends the episodes: a step is then FailedPrecondition, until reset()."""
+        self._episodes = []
+        super().close(**options)
+
+    def _seeds_of(self, seed: Seeds) -> list[Optional[int]]:
+        if seed is None:
+            return []
+        if isinstance(seed, (int, np.integer)):
+            return [whole("seed", seed) + i for i in range(self.num_envs)]
+        try:
+            seeds = [None if each is None else whole("seed", each) for each in seed]
+        except TypeError:
+            raise InvalidArgument(f"seed: {seed!r} is neither a whole number nor a list of them") from None
+        if len(seeds) != self.num_envs:
+            raise InvalidArgument(f"seed: {len(seeds)} seeds for {self.num_envs} patients")
+        return seeds
+
+    def _actions_of(self, actions: Any, going: Sequence[int]) -> dict[int, np.ndarray]:
+        """Returns the actions of the patients whose episodes go on, after a check of these alone."""
+        try:
+            rows = np.asarray(actions, np.float32)
+        except (TypeError, ValueError) as error:
+            raise InvalidArgument(f"actions: give an array with a row a patient: {error}") from None
+        if rows.ndim != 2 or len(rows) != self.num_envs:
+            raise InvalidArgument(f"actions: an array of shape {rows.shape} for {self.num_envs} patients: give a row a patient")
+        return {i: self.task.check(rows[i]) for i in going}
+
+    def _simulate(self, going: Sequence[int], actions: Mapping[int, np.ndarray]) -> list[Run]:
         if not going:
             return []
         parameters = [
@@ -142,17 +168,14 @@ class BreathingVector(VectorEnv):
         suffocated = episode.suffocated(observation, run.state.time)
         return (DIVERGED if suffocated else episode.reward(observation, action)), suffocated
 
-    @property
-    def _rest(self) -> tuple[State, Mapping[str, float], str]:
-        """The state, measures and hash with which every episode begins."""
-        if self._first is None:
-            start = {**self.task.fixed, **self._options}
-            with Session(
-                self._scene, preset=self.task.preset, set=start, resolution_mm=self._resolution, server=self._server
-            ) as session:
-                frame = session.frame(PARTS)
-            self._first = frame.state, dict(frame.measures), frame.state_hash
-        return self._first
+    def _start_of(self, options: Mapping[str, Any]) -> Start:
+        """Returns the state, measures and hash with which every episode with these options begins."""
+        start = {**self.task.fixed, **options}
+        with Session(
+            self._scene, preset=self.task.preset, set=start, resolution_mm=self._resolution, server=self._server
+        ) as session:
+            frame = session.frame(PARTS)
+        return frame.state, dict(frame.measures), frame.state_hash
 
     def _begin(self, random: np.random.Generator) -> Episode:
         episode = Episode.begin(self.task, random, self._cost)
