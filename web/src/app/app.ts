@@ -6,10 +6,8 @@ import { type ConnectionListener, type ConnectionState, SessionConnection } from
 import { download } from "../dom/download";
 import { ownStorage } from "../dom/storage";
 import { elementById } from "../dom/elements";
-import { loadOnOpen, section } from "../dom/rows";
 import { FilmMaker, type OpenWriter } from "../film/film_maker";
 import { inPageLanguage } from "../language/page_words";
-import { t } from "../language/translate";
 import { recordedMotion } from "../film/recorded_motion";
 import type { DisplayedFrame, FrameBuffer } from "../frames/frame_buffer";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
@@ -68,6 +66,7 @@ import { SecondView } from "./second_view";
 import { sessionFrames } from "./session_frames";
 import { SessionNumbers } from "./session_numbers";
 import { skipLinks } from "./skip_links";
+import { studiesSection } from "./studies_section";
 import { StudentView } from "./student_view";
 import { testHook } from "./test_hook";
 
@@ -344,24 +343,12 @@ export class App {
       this.probes.element,
       this.measures.element,
       distancePanel(this.comparisons, this.bodies, this.uploads.extensions),
-      this.studiesPanel(),
+      studiesSection(this.api, this.clock, controller),
       exportPanel(this.exports, this.bodies),
       uploadPanel(this.uploads),
       compileReportPanel(this.report),
     );
     elementById("graphs").append(this.graphs.element);
-  }
-
-  /** Returns the section of studies, whose code is loaded when it is opened. */
-  private studiesPanel(): HTMLElement {
-    const panel = section(t("Studies"), false);
-    return loadOnOpen(panel, async () => {
-      const [{ fillStudies }, { Studies }] = await Promise.all([
-        import("../panels/jobs/studies_panel"),
-        import("../session/studies"),
-      ]);
-      fillStudies(panel, new Studies(this.api, this.clock), this.controller);
-    });
   }
 
   private buildHeader(): void {
