@@ -49,7 +49,7 @@ absl::Status Unpack(const std::string& name, const std::string& folder) {
     bool escapes = inside.is_absolute();
     for (const auto& part : inside) escapes = escapes || part == "..";
     if (escapes)
-      return absl::InvalidArgumentError(absl::StrCat(name, ": ", inside.string(), " is a path outside the folder"));
+      return absl::DataLossError(absl::StrCat(name, ": ", inside.string(), " is a path outside the folder"));
     absl::Status copied = CopyEntry(name, zip.get(), std::filesystem::path(folder) / inside);
     if (!copied.ok()) return copied;
   }

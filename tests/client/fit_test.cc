@@ -217,7 +217,7 @@ TEST(Register, ToSurfacesTellsHowFarTheyAre) {
   EXPECT_LE(outcome.json()["structures"][0]["bent_mean_mm"], outcome.json()["structures"][0]["mean_mm"]);
   const Outcome swapped = Phrenic({"register", "thorax", "--resolution", "12", "--surface", "lung-right=" + left,
                                    "--surface", "lung-left=" + right});
-  EXPECT_EQ(swapped.code, 1);
+  EXPECT_EQ(swapped.code, 2);
   EXPECT_THAT(swapped.err, HasSubstr("in LPS the left has the larger x"));
   EXPECT_EQ(Phrenic({"register", "thorax"}).code, 2);
   EXPECT_EQ(Phrenic({"register", "thorax", "--surface", "liver=" + left}).code, 2);

@@ -221,7 +221,7 @@ TEST(Run, InvalidScenesAreRejectedWithFieldOrLine) {
   for (const BadScene& scene : scenes) {
     const std::string file = WriteScratch("bad.textproto", Scene(scene.from, scene.to));
     const Outcome run = Phrenic({"run", file, "--seconds", "0.1", "--data", testing::TempDir()});
-    EXPECT_EQ(run.code, 1) << scene.what;
+    EXPECT_EQ(run.code, 2) << scene.what;
     EXPECT_THAT(run.err, HasSubstr(scene.words)) << scene.what;
     EXPECT_THAT(run.out, IsEmpty()) << scene.what;
   }
@@ -248,7 +248,13 @@ TEST(Run, InvalidArgumentsHaveTheRightExitCode) {
       {{"run", "cube-springs", "-o", "yaml"}, 2, "--output"},
       {{"run"}, 2, "SCENE"},
       {{"dance"}, 2, ""},
-      {{"lern"}, 2, "did you mean --help?"},
+      {{"lern"}, 2, "first examples are in the help"},
+      {{"rnu"}, 2, "did you mean run?"},
+      {{"RUN"}, 2, "did you mean run?"},
+      {{"campaign", "rnu"}, 2, "did you mean run?"},
+      {{"lsit"}, 2, "did you mean sessions?"},
+      {{"--halp"}, 2, "did you mean --help?"},
+      {{"run", "--halp"}, 2, "did you mean --help?"},
       {{}, 2, "Usage\n  phrenic COMMAND"},
   };
   for (const BadRun& line : lines) {

@@ -125,7 +125,7 @@ TEST_F(Sessions, AVertexIsPulledAndReleased) {
   EXPECT_EQ(Json({"sessions"})["sessions"][0]["pulls"][0]["vertex"], 6);
   EXPECT_THAT(Ask({"pull", "class", "--release"}).out, Not(HasSubstr("pulled by")));
   EXPECT_EQ(Ask({"pull", "class", "--vertex", "6"}).code, 2) << "the body is missing";
-  EXPECT_EQ(Ask({"pull", "class"}).code, 1);
+  EXPECT_EQ(Ask({"pull", "class"}).code, 2);
   EXPECT_THAT(Ask({"create", "cube-springs", "--pull", "cube:6:1,0"}).err, HasSubstr("BODY:VERTEX:X,Y,Z"));
   EXPECT_THAT(Ask({"create", "cube-springs", "--pull", "cube:6:1,0,2"}).out, HasSubstr("pulled by (1, 0, 2) N"));
 }
