@@ -81,10 +81,11 @@ TEST(FullDisk, AsAFileFailsEveryCommand) {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
-  const Words lines[] = {with(study, {"--page", "/dev/full"}),
-                         with(study, {"--check", limits, "--junit", "/dev/full"}),
-                         {"campaign", "run", sweep, "--out", Scratch("full-campaign"), "--page", "/dev/full"},
-                         {"compare", Cube(), Cube(), "--check", "assd=1", "--junit", "/dev/full"}};
+  std::vector<Words> lines = {with(study, {"--check", limits, "--junit", "/dev/full"}),
+                              {"campaign", "run", sweep, "--out", Scratch("full-campaign"), "--page", "/dev/full"},
+                              {"compare", Cube(), Cube(), "--check", "assd=1", "--junit", "/dev/full"}};
+  const bool has_viewer = std::filesystem::exists(PHRENIC_SOURCE_DIR "/web/dist/report.html");
+  if (has_viewer) lines.push_back(with(study, {"--page", "/dev/full"}));
   for (const Words& words : lines) {
     const Outcome outcome = Phrenic(words);
     EXPECT_EQ(outcome.code, 1) << testing::PrintToString(words) << outcome.err;
