@@ -258,10 +258,10 @@ TEST_F(Sessions, ErrorsNameTheRemedyOnStandardError) {
       {{"play", "nobody"}, "nobody"},
       {{"export", "nobody", Scratch("x.msh")}, "nobody"},
       {{"create", "cube-springs", "--id", "taken"}, "taken"},
-      {{"create", "cube-springs", "--id", "Not An Id"}, "session_id"},
+      {{"create", "cube-springs", "--id", "Not An Id"}, "session_id", 2},
       {{"set", "taken", "breath_length=0"}, "breath_length: 0 is outside 0.5 to 30", 2},
       {{"set", "taken", "apply_links=maybe"}, "apply_links", 2},
-      {{"step", "taken", "0"}, "ticks"},
+      {{"step", "taken", "0"}, "ticks", 2},
       {{"export", "taken", Scratch("x.avi")}, "msh, depl", 2},
       {{"describe", "no-such-scene"}, "cube-springs"},
   };
