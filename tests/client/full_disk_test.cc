@@ -62,6 +62,21 @@ TEST(FullDisk, AsStandardOutputFailsEveryCommand) {
   }
 }
 
+// A watch would go on for as long as the session plays.
+TEST(FullDisk, EndsAWatch) {
+  if (!HasFullDevice()) GTEST_SKIP() << "no /dev/full";
+  RunningServer server;
+  ASSERT_NE(server.port(), 0) << server.output();
+  ASSERT_EQ(Phrenic({"create", "cube-springs", "--id", "class", "--play", "--server", server.address()}).code, 0);
+  for (const Words& more : {Words{"-o", "csv"}, {"-o", "jsonl"}, {"-o", "csv", "--every", "0.05"}}) {
+    Words words = {"watch", "class", "--server", server.address()};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome watched = PhrenicTo("/dev/full", words);
+    EXPECT_EQ(watched.code, 1) << testing::PrintToString(words);
+    EXPECT_THAT(watched.err, HasSubstr("standard output: No space left on device"));
+  }
+}
+
 TEST(FullDisk, KeepsTheExitCodeOfACommandThatFailsAnyway) {
   if (!HasFullDevice()) GTEST_SKIP() << "no /dev/full";
   const Outcome missed = PhrenicTo("/dev/full", {"compare", Cube(), Cube(), "--check", "area_a=0"});
