@@ -1,7 +1,6 @@
 #include "client/cli/guide.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "server/schema/names.h"
 
@@ -19,8 +18,8 @@ constexpr Example kFirst[] = {
 
 constexpr NamedText kExitCodes[] = {
     {"0", "success"},
-    {"1", "failure"},
-    {"2", "invalid command line or settings file"},
+    {"1", "failure: what was asked for could not be done"},
+    {"2", "invalid input: the command line, the environment, the settings file, or a file that they name"},
     {"3", "no server"},
     {"4",
      "a limit is exceeded, a replay ends in another state, a calibration reaches no such breath, or a required section "
@@ -63,6 +62,7 @@ constexpr Synonym kSynonyms[] = {
     {"clone", "fork"},        {"copy", "fork"},          {"simulate", "run"},
     {"parameters", "set"},    {"breathe", "physiology"}, {"completions", "completion"},
     {"tune", "calibrate"},    {"learn", "--help"},       {"tutorial", "--help"},
+    {"help", "--help"},
 };
 
 }  // namespace
@@ -77,15 +77,13 @@ std::string SettingsText() {
          "names options without dashes; options of one command are below its name in brackets.";
 }
 
-std::string CommandMeantBy(std::string_view word) {
-  const auto found = std::ranges::find(kSynonyms, word, &Synonym::word);
-  return found == std::end(kSynonyms) ? "" : found->command;
-}
-
-std::string CommandNearlyMeantBy(std::string_view word) {
-  std::vector<std::string> words;
-  for (const Synonym& synonym : kSynonyms) words.emplace_back(synonym.word);
-  return CommandMeantBy(schema::NearestName(word, words));
+std::string CommandMeantBy(std::string_view word, std::vector<std::string> commands) {
+  const auto meaning = [](std::string_view name) { return std::ranges::find(kSynonyms, name, &Synonym::word); };
+  if (const auto found = meaning(word); found != std::end(kSynonyms)) return found->command;
+  for (const Synonym& synonym : kSynonyms) commands.emplace_back(synonym.word);
+  const std::string nearest = schema::NearestName(word, commands);
+  const auto found = meaning(nearest);
+  return found == std::end(kSynonyms) ? nearest : found->command;
 }
 
 }  // namespace phrenic::client

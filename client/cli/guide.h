@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "client/cli/command.h"
 
@@ -22,10 +23,9 @@ std::span<const NamedText> EnvironmentVariables();
 // Returns the precedence of settings and the format of the settings file.
 std::string SettingsText();
 
-// Returns the command that a user means by a word: "sessions" for "ls"; empty if the word is not known.
-std::string CommandMeantBy(std::string_view word);
-// The same for a word that is nearly one of these, such as "lern" for "learn".
-std::string CommandNearlyMeantBy(std::string_view word);
+// Returns what a user means by a word that is none of `commands`: "sessions" for "ls", "run" for "rnu", "--help" for
+// "lern". Empty if the word is near none of them and of the words that users type for them.
+std::string CommandMeantBy(std::string_view word, std::vector<std::string> commands);
 
 }  // namespace phrenic::client
 

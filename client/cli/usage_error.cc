@@ -47,11 +47,12 @@ std::vector<std::string> CommandNames(const CLI::App& command) {
 
 std::string NoSuchCommand(const CLI::App& command, const std::string& word) {
   const bool at_top = command.get_parent() == nullptr;
-  std::string meant = at_top ? CommandMeantBy(word) : "";
-  if (meant.empty()) meant = schema::NearestName(word, CommandNames(command));
-  if (meant.empty() && at_top) meant = CommandNearlyMeantBy(word);
+  const std::vector<std::string> names = CommandNames(command);
+  const std::string meant = at_top ? CommandMeantBy(word, names) : schema::NearestName(word, names);
   const std::string what = absl::StrCat("there is no command \"", FullName(command), " ", word, "\"");
   if (meant.empty()) return absl::StrCat(what, "\n  all commands: ", FullName(command), " --help\n");
+  if (meant == "--help")
+    return absl::StrCat(what, "; the commands and first examples are in the help\n  try: phrenic --help\n");
   return absl::StrCat(what, "; did you mean ", meant, "?\n  try: ", FullName(command), " ", meant,
                       absl::StartsWith(meant, "--") ? "" : " --help", "\n");
 }
@@ -62,6 +63,7 @@ std::string NoSuchOption(const CLI::App& root, const CLI::App& command, CommandT
   for (const CLI::App* app : {&command, &root}) {
     for (const CLI::Option* option : OptionsOf(*app)) names.push_back(NameOf(*option).substr(2));
   }
+  names.emplace_back("help");  // not among OptionsOf
   const std::string name = word.substr(0, word.find('='));
   const std::string nearest = schema::NearestName(name.substr(std::min<size_t>(2, name.size())), names);
   return absl::StrCat(FullName(command), " has no option ", name,

@@ -194,8 +194,7 @@ void PrintCalibration(const Context& context, const std::string& command, const 
 int Calibrate(const Context& context, const CalibrateOptions& options) {
   const auto task = TaskOf(options);
   if (!task.ok()) {
-    Fail(task.status());
-    return kUsage;
+    return Fail(task.status());
   }
   CalibrateInput input{*task, nullptr, {}, {}};
   if (absl::Status status = ReadCalibrateScene(context, options, input); !status.ok()) {

@@ -156,8 +156,7 @@ int CompareOn(const Context& context, const CompareOptions& options, const v1::C
 int Compare(const Context& context, const CompareOptions& options) {
   const auto limits = ReadLimits(options.checks);
   if (!limits.ok()) {
-    Fail(limits.status());
-    return kUsage;
+    return Fail(limits.status());
   }
   const auto request = MakeCompareRequest(options);
   if (!request.ok()) return Fail(request.status());

@@ -91,8 +91,7 @@ int RegisterPerson(const Context& context, const RegisterOptions& options) {
   const int given =
       (options.exhale.empty() ? 0 : 1) + (options.surfaces.empty() ? 0 : 1) + (options.volume.empty() ? 0 : 1);
   if (given != 1) {
-    Fail(absl::InvalidArgumentError("give one of --exhale (points), --surface (files) and --volume (labels)"));
-    return kUsage;
+    return Fail(absl::InvalidArgumentError("give one of --exhale (points), --surface (files) and --volume (labels)"));
   }
   const auto input = ReadRegisterInput(options);
   if (!input.ok()) return FailFit(context, input.status());
@@ -276,8 +275,7 @@ int FitAll(const Context& context, const FitCommandOptions& options) {
 // Fits to landmarks of several times, by a column of their file.
 int FitPhases(const Context& context, const FitCommandOptions& options) {
   if (const std::string fault = JointUsageFault(options); !fault.empty()) {
-    Fail(absl::InvalidArgumentError(fault));
-    return kUsage;
+    return Fail(absl::InvalidArgumentError(fault));
   }
   return FitAll(context, options);
 }
@@ -387,8 +385,7 @@ int FitOneNumber(const Context& context, const FitCommandOptions& options) {
 
 int FitPerson(const Context& context, const FitCommandOptions& options) {
   if (const std::string fault = FitUsageFault(options); !fault.empty()) {
-    Fail(absl::InvalidArgumentError(fault));
-    return kUsage;
+    return Fail(absl::InvalidArgumentError(fault));
   }
   if (!options.simulated.parameters.empty()) return FitParameters(context, options);
   if (HasOtherKinds(options.data)) return FitAll(context, options);

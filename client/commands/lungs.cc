@@ -258,10 +258,7 @@ void PrintLungsJson(const std::vector<LungsOfBreath>& breaths) {
 }
 
 int Lungs(const Context& context, const LungsOptions& options) {
-  if (absl::Status status = CheckField(options); !status.ok()) {
-    Fail(status);
-    return kUsage;
-  }
+  if (absl::Status status = CheckField(options); !status.ok()) return Fail(status);
   const auto breaths = ReadBreaths(context, options);
   if (!breaths.ok()) return Fail(context, service::ToGrpc(breaths.status()));
   context.json() ? PrintLungsJson(*breaths) : PrintLungs(context, *breaths);

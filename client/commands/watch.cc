@@ -94,7 +94,7 @@ class Watcher {
       if (tissue_ && event.has_frame() && !(read = tissue_->AddTo(*event.mutable_frame())).ok()) break;
       printer_->Print(event);
       if (!event.has_frame()) continue;
-      if (++frames_ == options_.count) call.TryCancel();
+      if (++frames_ == options_.count || !std::cout) call.TryCancel();  // or the output's disk is full
       acknowledged.set_sequence(event.frame().sequence());
       if (request_.max_unacked_frames() > 0) Acknowledge(*stub_, request_, acknowledged);
     }
@@ -102,7 +102,7 @@ class Watcher {
     if (!read.ok()) call.TryCancel();
     const grpc::Status status = stream->Finish();
     if (!read.ok()) return read;
-    const bool enough = frames_ > 0 && frames_ == options_.count;
+    const bool enough = !std::cout || (frames_ > 0 && frames_ == options_.count);
     return enough ? grpc::Status::OK : status;
   }
 
@@ -149,7 +149,7 @@ class SampleWatcher {
   }
 
  private:
-  bool Enough() const { return options_.count > 0 && printed_ >= options_.count; }
+  bool Enough() const { return !std::cout || (options_.count > 0 && printed_ >= options_.count); }
 
   // The next connection goes on from here, if the server still has this track then; else it reports the gap.
   void NotePosition(const v1::SampleBatch& batch) {
@@ -205,14 +205,8 @@ absl::Status CheckSampling(const WatchOptions& options) {
 }
 
 int Watch(const Context& context, const WatchOptions& options) {
-  if (absl::Status status = CheckQuestion(options.tissue); !status.ok()) {
-    Fail(status);
-    return kUsage;
-  }
-  if (absl::Status status = CheckSampling(options); !status.ok()) {
-    Fail(status);
-    return kUsage;
-  }
+  if (absl::Status status = CheckQuestion(options.tissue); !status.ok()) return Fail(status);
+  if (absl::Status status = CheckSampling(options); !status.ok()) return Fail(status);
   grpc::Status status;
   if (options.every > 0) {
     SampleWatcher watcher(context, options);

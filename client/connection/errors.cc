@@ -35,6 +35,8 @@ int FailUnavailable(const Context& context, const std::string& message) {
   return kUnreachable;
 }
 
+int ExitCodeOf(grpc::StatusCode code) { return code == grpc::StatusCode::INVALID_ARGUMENT ? kUsage : kFailed; }
+
 }  // namespace
 
 std::string ErrorPrefix() { return Painted("phrenic:", Ink::kRed, STDERR_FILENO); }
@@ -49,12 +51,12 @@ int Fail(const Context& context, const grpc::Status& status) {
   if (status.error_code() == grpc::StatusCode::NOT_FOUND) PrintListCommand(status.error_message());
   const bool refused = status.error_code() == grpc::StatusCode::PERMISSION_DENIED ||
                        status.error_code() == grpc::StatusCode::UNAUTHENTICATED;
-  return refused ? kNotAllowed : kFailed;
+  return refused ? kNotAllowed : ExitCodeOf(status.error_code());
 }
 
 int Fail(const absl::Status& status) {
   std::cerr << ErrorPrefix() << " " << std::string(status.message()) << "\n";
-  return kFailed;
+  return ExitCodeOf(static_cast<grpc::StatusCode>(status.code()));  // equal numbers
 }
 
 }  // namespace phrenic::client

@@ -14,11 +14,15 @@ namespace phrenic::client {
 // Returns "phrenic:", the prefix of every error message; red on a terminal.
 std::string ErrorPrefix();
 
-// Prints the error, its remedy and the next command to type on standard error. Returns the exit code: kInterrupted
-// after Ctrl-C, kUnreachable for UNAVAILABLE, kNotAllowed for PERMISSION_DENIED and UNAUTHENTICATED, kFailed otherwise.
-// Requires: the status is not OK.
+// The exit codes of errors, the same for every command. INVALID_ARGUMENT: kUsage, what the user wrote is wrong: on the
+// command line, in the environment, in the settings file or in a file that they name, whether this program or the
+// server notices it. UNAVAILABLE: kUnreachable. PERMISSION_DENIED and UNAUTHENTICATED of a server: kNotAllowed. Others:
+// kFailed, what was asked for could not be done.
+
+// Prints the error, its remedy and the next command to type on standard error. Returns the exit code; kInterrupted
+// after Ctrl-C. Requires: the status is not OK.
 int Fail(const Context& context, const grpc::Status& status);
-// Prints the error on standard error. Returns kFailed.
+// Prints an error of this program on standard error. Returns kUsage or kFailed. Requires: the status is not OK.
 int Fail(const absl::Status& status);
 
 }  // namespace phrenic::client

@@ -13,11 +13,11 @@ namespace {
 
 std::string SceneNameOf(const std::string& file) { return std::filesystem::path(file).stem().string(); }
 
-// Writes a scene that Phrenic takes. INVALID_ARGUMENT if it would refuse it.
+// Writes a scene that Phrenic takes. FAILED_PRECONDITION if it would refuse it.
 absl::Status WriteScene(const std::string& file, const v1::Scene& scene, const std::string& comment) {
   if (absl::Status status = schema::Validate(scene); !status.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat("this motion is beyond that of a breath, so that ", file,
-                                                   " is not written: ", std::string(status.message())));
+    return absl::FailedPreconditionError(absl::StrCat("this motion is beyond that of a breath, so that ", file,
+                                                      " is not written: ", std::string(status.message())));
   }
   return WriteWhole(file, SceneText(scene, comment));
 }

@@ -13,7 +13,7 @@ namespace phrenic::client {
 
 // Writes a fit; the scene has the file's name. `source` names the landmarks' files. `landmarks`: adds up to 400 of the
 // held-out half and what the fit leaves at them. DATA_LOSS names the file if it cannot be
-// written; INVALID_ARGUMENT if the motion is beyond the parameters' ranges.
+// written; FAILED_PRECONDITION if the motion is beyond the parameters' ranges.
 absl::Status WriteFittedScene(const std::string& file, const fit::SceneLungs& lungs, const fit::MotionFit& fit,
                               const fit::FitOptions& options, const std::string& source, bool landmarks);
 

@@ -48,8 +48,7 @@ absl::Status Unpack(const std::string& name, const std::string& folder) {
     const std::filesystem::path inside(archive_entry_pathname(entry));
     bool escapes = inside.is_absolute();
     for (const auto& part : inside) escapes = escapes || part == "..";
-    if (escapes)
-      return absl::InvalidArgumentError(absl::StrCat(name, ": ", inside.string(), " is a path outside the folder"));
+    if (escapes) return absl::DataLossError(absl::StrCat(name, ": ", inside.string(), " is a path outside the folder"));
     absl::Status copied = CopyEntry(name, zip.get(), std::filesystem::path(folder) / inside);
     if (!copied.ok()) return copied;
   }

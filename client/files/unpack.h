@@ -8,8 +8,8 @@
 
 namespace phrenic::client {
 
-// Extracts a zip archive into `folder`, in the archive's order, and overwrites existing files. INVALID_ARGUMENT if the
-// archive names a path outside the folder; DATA_LOSS if the archive cannot be read or a file cannot be written.
+// Extracts a zip archive into `folder`, in the archive's order, and overwrites existing files. DATA_LOSS if the archive
+// names a path outside the folder or cannot be read, or if a file cannot be written.
 absl::Status Unpack(const std::string& archive, const std::string& folder);
 
 }  // namespace phrenic::client

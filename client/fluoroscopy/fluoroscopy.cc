@@ -136,10 +136,7 @@ absl::Status MakePicture(const Context& context, const FluoroscopyOptions& optio
 }
 
 int Fluoroscopy(const Context& context, const FluoroscopyOptions& options) {
-  if (absl::Status status = CheckFile(options.out); !status.ok()) {
-    Fail(status);
-    return kUsage;
-  }
+  if (absl::Status status = CheckFile(options.out); !status.ok()) return Fail(status);
   const absl::Status status = MakePicture(context, options);
   return status.ok() ? kOk : Fail(context, service::ToGrpc(status));
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 
@@ -11,17 +13,19 @@ namespace {
 
 constexpr size_t kLongestGuess = 64;  // a longer name is not a misspelling
 
-// Returns the Levenshtein distance: the fewest insertions, deletions and replacements that turn `a` into `b`.
+// Returns the fewest insertions, deletions, replacements and exchanges of neighbours that turn `a` into `b`, with no
+// letter changed twice (Damerau 1964, optimal string alignment).
 size_t EditDistance(std::string_view a, std::string_view b) {
-  std::vector<size_t> row(b.size() + 1);
+  std::vector<size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   std::iota(row.begin(), row.end(), size_t{0});
   for (size_t i = 1; i <= a.size(); ++i) {
-    size_t diagonal = row[0];
+    before.swap(last);
+    last.swap(row);
     row[0] = i;
     for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+      row[j] = std::min({last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1), last[j] + 1, row[j - 1] + 1});
+      const bool exchanged = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (exchanged) row[j] = std::min(row[j], before[j - 2] + 1);
     }
   }
   return row.back();
@@ -31,11 +35,12 @@ size_t EditDistance(std::string_view a, std::string_view b) {
 
 std::string NearestName(std::string_view wanted, const std::vector<std::string>& names) {
   if (wanted.empty() || wanted.size() > kLongestGuess || names.empty()) return "";
-  const auto begun = [&](const std::string& name) { return name.starts_with(wanted); };
+  const std::string small = absl::AsciiStrToLower(std::string(wanted));
+  const auto begun = [&](const std::string& name) { return absl::StartsWithIgnoreCase(name, small); };
   if (wanted.size() > 1 && std::ranges::count_if(names, begun) == 1) return *std::ranges::find_if(names, begun);
-  const std::string nearest =
-      *std::ranges::min_element(names, {}, [&](const std::string& name) { return EditDistance(wanted, name); });
-  return EditDistance(wanted, nearest) <= nearest.size() / 2 ? nearest : "";
+  const auto distance = [&](const std::string& name) { return EditDistance(small, absl::AsciiStrToLower(name)); };
+  const std::string nearest = *std::ranges::min_element(names, {}, distance);
+  return distance(nearest) <= nearest.size() / 2 ? nearest : "";
 }
 
 std::string ThereAre(std::string_view wanted, const std::vector<std::string>& names) {

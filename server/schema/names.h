@@ -8,8 +8,9 @@
 
 namespace phrenic::schema {
 
-// Returns the name that `wanted` probably misspells: the only one that begins with it, or the nearest by Levenshtein
-// distance if that is at most half of the name's length. Returns "" if there is none.
+// Returns the name that `wanted` probably misspells, whatever the case of its letters: the only one that begins with
+// it, or the one with the fewest letters inserted, left out, replaced or exchanged with a neighbour, if these are at
+// most half of the name's length. The first of several. Returns "" if no name is so near.
 std::string NearestName(std::string_view wanted, const std::vector<std::string>& names);
 
 // Returns the rest of a message that begins with `there is no scene "thorx"`: "; did you mean thorax? There are cube,

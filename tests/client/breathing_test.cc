@@ -25,7 +25,7 @@ TEST(Presets, AreOverriddenBySet) {
 
 TEST(Presets, UnknownOnesAreRejectedWithTheKnownOnes) {
   const Outcome none = Phrenic({"run", "thorax", "--resolution", "20", "--preset", "snore"});
-  EXPECT_EQ(none.code, 1);
+  EXPECT_EQ(none.code, 2);
   EXPECT_THAT(none.err, HasSubstr("has no preset \"snore\"; there are quiet, upright, deep"));
 }
 

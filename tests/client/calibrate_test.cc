@@ -61,7 +61,7 @@ TEST(Calibrate, InvalidOptionsAreUsageErrorsThatNameTheOption) {
 
 TEST(Calibrate, AnUnknownPresetIsAnsweredWithTheKnownOnes) {
   const Outcome outcome = Calibrated({"--preset", "snore", "--tidal-volume", "0.5", "--abdominal-share", "0.6"});
-  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("quiet"));
 }
 

@@ -264,7 +264,7 @@ TEST(Credibility, NamesTheFileOfBadEvidence) {
   const std::string bad = WriteScratch("bad.json", "{}");
   for (const char* flag : {"--exact", "--uncertainty", "--physiology", "--orders"}) {
     const Outcome outcome = Phrenic({"credibility", scene, "--use", use, flag, bad});
-    EXPECT_EQ(outcome.code, 1) << flag;
+    EXPECT_EQ(outcome.code, 2) << flag;
     EXPECT_THAT(outcome.err, HasSubstr("bad.json")) << flag;
   }
   EXPECT_THAT(Phrenic({"credibility", scene, "--use", "/nowhere"}).err, HasSubstr("/nowhere"));

@@ -62,7 +62,7 @@ TEST(InspectCommand, InvalidFilesAreRejectedWithFileAndLine) {
   EXPECT_THAT(missing.err, HasSubstr("/nowhere/lung.stl"));
   const Outcome bad =
       Phrenic({"inspect", WriteScratch("bad.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 1\n")});
-  EXPECT_EQ(bad.code, 1);
+  EXPECT_EQ(bad.code, 2);
   EXPECT_THAT(bad.err, HasSubstr("bad.stl:4: a corner is written"));
   EXPECT_THAT(bad.out, IsEmpty());
 }
@@ -106,7 +106,7 @@ TEST(ConvertCommand, LossesAreReported) {
   EXPECT_THAT(stl.err, HasSubstr("the region \"tendon\" is missing"));
   EXPECT_THAT(Phrenic({"convert", regions, Scratch("out.msh")}).err, IsEmpty());
   const Outcome unknown = Phrenic({"convert", regions, Scratch("out.step")});
-  EXPECT_EQ(unknown.code, 1);
+  EXPECT_EQ(unknown.code, 2);
   EXPECT_THAT(unknown.err, HasSubstr(".obj, .msh, .stl, .ply"));
 }
 

@@ -243,7 +243,7 @@ TEST(OddArguments, OfAVastCampaignAreCountedBeforeTheyAreMade) {
   }
   const Outcome outcome =
       Phrenic({"campaign", "report", WriteScratch("odd-vast.textproto", text), "--out", Scratch("odd-vast")});
-  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.code, 2);
   EXPECT_TRUE(absl::StrContains(outcome.err, "more than a million runs")) << outcome.err;
 }
 

@@ -21,9 +21,9 @@ TEST(Reconnect, AnExportResumesAfterARestartAndWritesTheSameFile) {
   ASSERT_EQ(Phrenic(with({"create", "sheet-2d", "--id", "class", "--set", "time_step=1e-5"})).code, 0);
   const std::string whole = Scratch("whole.csv"), interrupted = Scratch("interrupted.csv"),
                     said = Scratch("interrupted.err");
-  ASSERT_EQ(Phrenic(with({"export", "class", whole, "--seconds", "3", "--fps", "4"})).code, 0);
+  ASSERT_EQ(Phrenic(with({"export", "class", whole, "--seconds", "20", "--fps", "4"})).code, 0);
   const pid_t client =
-      Start("phrenic", with({"export", "class", interrupted, "--seconds", "3", "--fps", "4"}), "/dev/null", said);
+      Start("phrenic", with({"export", "class", interrupted, "--seconds", "20", "--fps", "4"}), "/dev/null", said);
   while (Phrenic(with({"exports", "list", "-o", "json"})).json()["exports"].empty()) usleep(20'000);
   usleep(500'000);  // time to receive progress
   server.Kill();

@@ -48,11 +48,11 @@ TEST(Replay, OfAnotherSceneIsRejected) {
 TEST(Replay, OfAnInvalidRecordNamesTheCommandThatWritesOne) {
   for (const char* text : {"", "{", "[]", "{\"session\": {}}", "{\"session\": 3, \"state_hash\": 4}"}) {
     const Outcome again = Phrenic({"replay", WriteScratch("bad.json", text)});
-    EXPECT_EQ(again.code, 1) << text;
+    EXPECT_EQ(again.code, 2) << text;
     EXPECT_THAT(again.err, HasSubstr("phrenic run ... -o json")) << text;
   }
   const Outcome wrong = Phrenic({"replay", RecordedCube([](nlohmann::json& json) { json["session"]["tick"] = "x"; })});
-  EXPECT_EQ(wrong.code, 1);
+  EXPECT_EQ(wrong.code, 2);
   EXPECT_THAT(wrong.err, HasSubstr("session: "));
   EXPECT_THAT(Phrenic({"replay", Scratch("missing.json")}).err, HasSubstr("cannot read the recorded run"));
 }

@@ -202,6 +202,7 @@ struct BadScene {
   const char* from;
   const char* to;
   const char* words;
+  int code = 2;
 };
 
 TEST(Run, InvalidScenesAreRejectedWithFieldOrLine) {
@@ -216,12 +217,12 @@ TEST(Run, InvalidScenesAreRejectedWithFieldOrLine) {
       {"parameter out of range", "time_step: 0.01", "breath_force: 99", "breath_force: 99 is outside 0 to 20"},
       {"missing mesh file",
        "polyhedron { vertices { } vertices { x: 1 } vertices { y: 1 } triangles { a: 0 b: 1 c: 2 } }",
-       "file { path: \"nowhere/lung.obj\" }", "lung.obj"},
+       "file { path: \"nowhere/lung.obj\" }", "lung.obj", 1},
   };
   for (const BadScene& scene : scenes) {
     const std::string file = WriteScratch("bad.textproto", Scene(scene.from, scene.to));
     const Outcome run = Phrenic({"run", file, "--seconds", "0.1", "--data", testing::TempDir()});
-    EXPECT_EQ(run.code, 1) << scene.what;
+    EXPECT_EQ(run.code, scene.code) << scene.what;
     EXPECT_THAT(run.err, HasSubstr(scene.words)) << scene.what;
     EXPECT_THAT(run.out, IsEmpty()) << scene.what;
   }
@@ -248,7 +249,13 @@ TEST(Run, InvalidArgumentsHaveTheRightExitCode) {
       {{"run", "cube-springs", "-o", "yaml"}, 2, "--output"},
       {{"run"}, 2, "SCENE"},
       {{"dance"}, 2, ""},
-      {{"lern"}, 2, "did you mean --help?"},
+      {{"lern"}, 2, "first examples are in the help"},
+      {{"rnu"}, 2, "did you mean run?"},
+      {{"RUN"}, 2, "did you mean run?"},
+      {{"campaign", "rnu"}, 2, "did you mean run?"},
+      {{"lsit"}, 2, "did you mean sessions?"},
+      {{"--halp"}, 2, "did you mean --help?"},
+      {{"run", "--halp"}, 2, "did you mean --help?"},
       {{}, 2, "Usage\n  phrenic COMMAND"},
   };
   for (const BadRun& line : lines) {

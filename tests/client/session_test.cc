@@ -125,7 +125,7 @@ TEST_F(Sessions, AVertexIsPulledAndReleased) {
   EXPECT_EQ(Json({"sessions"})["sessions"][0]["pulls"][0]["vertex"], 6);
   EXPECT_THAT(Ask({"pull", "class", "--release"}).out, Not(HasSubstr("pulled by")));
   EXPECT_EQ(Ask({"pull", "class", "--vertex", "6"}).code, 2) << "the body is missing";
-  EXPECT_EQ(Ask({"pull", "class"}).code, 1);
+  EXPECT_EQ(Ask({"pull", "class"}).code, 2);
   EXPECT_THAT(Ask({"create", "cube-springs", "--pull", "cube:6:1,0"}).err, HasSubstr("BODY:VERTEX:X,Y,Z"));
   EXPECT_THAT(Ask({"create", "cube-springs", "--pull", "cube:6:1,0,2"}).out, HasSubstr("pulled by (1, 0, 2) N"));
 }
@@ -258,10 +258,10 @@ TEST_F(Sessions, ErrorsNameTheRemedyOnStandardError) {
       {{"play", "nobody"}, "nobody"},
       {{"export", "nobody", Scratch("x.msh")}, "nobody"},
       {{"create", "cube-springs", "--id", "taken"}, "taken"},
-      {{"create", "cube-springs", "--id", "Not An Id"}, "session_id"},
+      {{"create", "cube-springs", "--id", "Not An Id"}, "session_id", 2},
       {{"set", "taken", "breath_length=0"}, "breath_length: 0 is outside 0.5 to 30", 2},
       {{"set", "taken", "apply_links=maybe"}, "apply_links", 2},
-      {{"step", "taken", "0"}, "ticks"},
+      {{"step", "taken", "0"}, "ticks", 2},
       {{"export", "taken", Scratch("x.avi")}, "msh, depl", 2},
       {{"describe", "no-such-scene"}, "cube-springs"},
   };

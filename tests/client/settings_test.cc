@@ -34,7 +34,7 @@ TEST(Settings, FollowThePrecedence) {
 TEST(Settings, ATokenThatGrpcForbidsIsAnErrorThatNamesIt) {
   const Variable token("PHRENIC_TOKEN", "\xe9");
   const Outcome refused = Phrenic({"sessions", "--server", "127.0.0.1:1"});
-  EXPECT_EQ(refused.code, 1);
+  EXPECT_EQ(refused.code, 2);
   EXPECT_THAT(refused.err, HasSubstr("PHRENIC_TOKEN: the text is not a token"));
 }
 

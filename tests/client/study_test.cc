@@ -67,7 +67,7 @@ TEST(StudyError, InvalidLimitsAreRejected) {
   EXPECT_EQ(no_file.code, 1);
   EXPECT_THAT(no_file.err, HasSubstr("/nowhere/limits.textproto"));
   const Outcome no_table = Quick({"--check", WriteScratch("a.textproto", R"(limits { table: "cows" column: "x" })")});
-  EXPECT_EQ(no_table.code, 1);
+  EXPECT_EQ(no_table.code, 2);
   EXPECT_THAT(no_table.err, HasSubstr("no table \"cows\""));
   const Outcome typo = Quick({"--check", WriteScratch("b.textproto", R"(limits { tabel: "rows" })")});
   EXPECT_THAT(typo.err, HasSubstr("b.textproto:1:"));

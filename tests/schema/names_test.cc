@@ -14,6 +14,13 @@ TEST(NearestName, IsWithinHalfOfTheLetters) {
   EXPECT_EQ(NearestName("lung", kNames), "");
 }
 
+TEST(NearestName, CountsExchangedNeighboursOnceAndNoCase) {
+  EXPECT_EQ(NearestName("rnu", {"run", "set"}), "run");
+  EXPECT_EQ(NearestName("RUN", {"run", "set"}), "run");
+  EXPECT_EQ(NearestName("nru", {"run", "set"}), "") << "two changes of three letters";
+  EXPECT_EQ(NearestName("THORAX-P", kNames), "thorax-patient");
+}
+
 TEST(NearestName, IsTheOnlyOneWithThatPrefix) {
   EXPECT_EQ(NearestName("cu", kNames), "cube-springs");
   EXPECT_EQ(NearestName("thorax-", kNames), "thorax-patient");
