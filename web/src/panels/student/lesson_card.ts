@@ -8,7 +8,7 @@ import type { OwnLessons } from "../../session/own_lessons";
 import { Signal } from "../../state/signal";
 import { ClassResults, type ListAnswers } from "./class_results";
 import { LessonList } from "./lesson_list";
-import { LessonMaker } from "./lesson_maker";
+import type { LessonMaker } from "./lesson_maker";
 import { differenceWords, lessonTest, questionCount, type Score } from "./lesson_test";
 import { predictionForm, refusePrediction } from "./prediction_form";
 import type { OnPredicted } from "./prediction_pad";
@@ -229,7 +229,7 @@ export class LessonCard {
 
   private async make(first: Lesson | undefined): Promise<void> {
     const { own, keep, names } = this.actions;
-    const { scene } = await names();
+    const [{ scene }, { LessonMaker: Maker }] = await Promise.all([names(), import("./lesson_maker")]);
     const save = (lesson: Lesson) => {
       const name = own.put(lesson);
       this.draft = undefined;
@@ -241,7 +241,7 @@ export class LessonCard {
       play: (name: string) => void this.start({ name, step: 1 }),
       leave: () => this.showList(),
     };
-    if (first !== undefined || this.draft === undefined) this.draft = new LessonMaker(making, scene, first);
+    if (first !== undefined || this.draft === undefined) this.draft = new Maker(making, scene, first);
     const { element } = this.draft;
     this.element.replaceChildren(element);
     element.querySelector("input")?.focus();

@@ -4,7 +4,7 @@ import type { Lesson } from "../../gen/phrenic/v1/lesson_pb";
 import { readLessonFile } from "../../session/lesson_file";
 import { checkLesson, type FetchJson, lessonNames, loadLesson, type SceneNames } from "../../session/lessons";
 import type { OwnLessons } from "../../session/own_lessons";
-import { saveAsFile } from "./lesson_maker";
+import { saveAsFile } from "./save_lesson";
 import { t } from "../../language/translate";
 
 /** Where the lessons of the list come from. */

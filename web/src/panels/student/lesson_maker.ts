@@ -1,9 +1,9 @@
 import { clone, create } from "@bufbuild/protobuf";
-import { download } from "../../dom/download";
 import { make } from "../../dom/elements";
 import { alertMessage, labelledRow } from "../../dom/rows";
 import { type Lesson, LessonSchema } from "../../gen/phrenic/v1/lesson_pb";
-import { faultOf, lessonText } from "../../session/lesson_file";
+import { faultOf } from "../../session/lesson_file";
+import { saveAsFile } from "./save_lesson";
 import { type KeepView, StepForm } from "./step_form";
 import { t } from "../../language/translate";
 
@@ -108,10 +108,4 @@ export class LessonMaker {
 function stepButton(verb: string, index: number, onclick: () => void): HTMLElement {
   const ariaLabel = t("{0}: step {1}", verb, index + 1);
   return make("button", { type: "button", className: "small", ariaLabel, onclick }, verb);
-}
-
-/** Saves a lesson as a file that this page opens. */
-export function saveAsFile(lesson: Lesson): void {
-  const name = lesson.title.toLowerCase().replaceAll(/[^a-z0-9]+/g, "-").replaceAll(/^-|-$/g, ""); // prettier-ignore
-  download(`${name || "lesson"}.json`, new Blob([lessonText(lesson)], { type: "application/json" }));
 }
