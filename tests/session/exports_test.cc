@@ -200,7 +200,7 @@ TEST_F(UploadsTest, AFileIsKeptByItsContentAndScenesNameIt) {
   const auto finished = Upload("a.obj", kSurface, Sha256Hex(kSurface));
   ASSERT_TRUE(finished.ok()) << finished.status();
   EXPECT_EQ(finished->file.path(), "upload:" + Sha256Hex(kSurface));
-  EXPECT_EQ(finished->surface.mesh.vertices(0, 1), 0.03);
+  EXPECT_EQ(finished->surface->mesh.vertices(0, 1), 0.03);
   const auto again = uploads_.Begin(by_, "b.obj", sizeof kSurface - 1, Sha256Hex(kSurface));
   ASSERT_TRUE(again.ok()) << again.status();
   EXPECT_TRUE(again->id.empty()) << "it is there";
@@ -239,7 +239,7 @@ TEST_F(UploadsTest, TwoClientsThatUploadTheSameFileShareOneUpload) {
   ASSERT_TRUE(first.ok()) << first.status();
   ASSERT_TRUE(second.ok()) << second.status();
   EXPECT_EQ(first->file.sha256, hash);
-  EXPECT_EQ(first->surface.mesh.vertices, second->surface.mesh.vertices);
+  EXPECT_EQ(first->surface->mesh.vertices, second->surface->mesh.vertices);
   EXPECT_THAT(uploads_.List(by_), SizeIs(1));
 }
 
