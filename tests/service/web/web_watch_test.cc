@@ -166,7 +166,7 @@ class WebWatchTest : public ServerFixture {
 // One viewer after the other sees a paused session: its status and its newest frame are the same.
 TEST_F(WebWatchTest, TheBodyIsTheFramingOfTheNativeMessages) {
   ASSERT_TRUE(Step("cube", 30));
-  const auto first_two = [this](MessageStream& stream) {
+  const auto first_two = [](MessageStream& stream) {
     std::vector<std::string> messages;
     for (int i = 0; i < 2; ++i) messages.push_back(stream.Next().value_or("the stream ended"));
     return messages;
