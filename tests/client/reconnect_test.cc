@@ -11,6 +11,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
+// Simulated time [s] that takes seconds to export.
+#ifdef PHRENIC_SANITIZED
+constexpr char kLongExport[] = "1.5";
+#else
+constexpr char kLongExport[] = "20";
+#endif
+
 TEST(Reconnect, AnExportResumesAfterARestartAndWritesTheSameFile) {
   RunningServer server(Scratch("reconnect_store"));
   const std::vector<std::string> at = {"--server", server.address()};
@@ -21,9 +28,9 @@ TEST(Reconnect, AnExportResumesAfterARestartAndWritesTheSameFile) {
   ASSERT_EQ(Phrenic(with({"create", "sheet-2d", "--id", "class", "--set", "time_step=1e-5"})).code, 0);
   const std::string whole = Scratch("whole.csv"), interrupted = Scratch("interrupted.csv"),
                     said = Scratch("interrupted.err");
-  ASSERT_EQ(Phrenic(with({"export", "class", whole, "--seconds", "20", "--fps", "4"})).code, 0);
-  const pid_t client =
-      Start("phrenic", with({"export", "class", interrupted, "--seconds", "20", "--fps", "4"}), "/dev/null", said);
+  ASSERT_EQ(Phrenic(with({"export", "class", whole, "--seconds", kLongExport, "--fps", "20"})).code, 0);
+  const pid_t client = Start("phrenic", with({"export", "class", interrupted, "--seconds", kLongExport, "--fps", "20"}),
+                             "/dev/null", said);
   while (Phrenic(with({"exports", "list", "-o", "json"})).json()["exports"].empty()) usleep(20'000);
   usleep(500'000);  // time to receive progress
   server.Kill();
