@@ -43,7 +43,7 @@ Eigen::AlignedBox3d PlacedBox(const PhantomBody& body) {
 
 LabelVolume EmptyVolume(const PhantomBody& body, double voxel) {
   const Eigen::AlignedBox3d bounds = PlacedBox(body);
-  const Eigen::Vector3d low = bounds.min(), high = bounds.max();
+  const Eigen::Vector3d &low = bounds.min(), &high = bounds.max();
   LabelVolume volume;
   volume.size = ((high - low) / voxel).array().ceil().cast<int>() + 1;
   // The usual scanner orientation: i to the patient's right, j anterior, k superior.

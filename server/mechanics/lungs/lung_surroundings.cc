@@ -55,13 +55,11 @@ void LungSurroundings::Bind(const LungTissue& tissue, const Mesh& sheet, const M
     std::array<SurfacePoint, 2> near = {surfaces[0].Facing(point, normal), surfaces[1].Facing(point, normal)};
     if (IsInCupola(point, top_of_wall)) near[1] = surfaces[1].tree.Nearest(wall.vertices, surfaces[1].boxes, point, 1);
     const size_t nearest = near[0].squared <= near[1].squared ? 0 : 1;
-    const bool at_recess = nearest == 0 && surfaces[1].IsWithinReach(point);
-    if (near[nearest].triangle >= 0 && at_recess) {
-      neighbours_.push_back(LungNeighbour::kNone);
-    } else if (near[nearest].triangle >= 0) {
+    const bool touches = near[nearest].triangle >= 0, at_recess = nearest == 0 && surfaces[1].IsWithinReach(point);
+    if (touches && !at_recess) {
       contacts_[nearest].push_back({p, surfaces[nearest].tree.triangle(near[nearest].triangle), near[nearest].weights});
       neighbours_.push_back(static_cast<LungNeighbour>(nearest));
-    } else if (-side * normal.x() > kInwards) {
+    } else if (!touches && -side * normal.x() > kInwards) {
       mediastinal_area_ += areas_[p] * std::abs(normal.x());
       beside_mediastinum_ -= areas_[p] * normal.x() * point.x();
       neighbours_.push_back(LungNeighbour::kMediastinum);
