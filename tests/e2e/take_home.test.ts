@@ -55,7 +55,7 @@ async function watch(page: Page, bytes: Buffer, times: number[]) {
   );
 }
 
-test("AFilmOfABreathPlays", async () => {
+test("AFilmOfABreathPlays", { timeout: 240_000 }, async () => {
   const viewer = await ViewerPage.open(browser, server.url);
   const { page } = viewer;
   await page.locator("#coloring-kind").selectOption("displacement", { force: true });
@@ -64,10 +64,10 @@ test("AFilmOfABreathPlays", async () => {
   await page.locator("#film").waitFor();
   await page.focus("#film");
   const started = Date.now();
-  const saving = page.waitForEvent("download", { timeout: 150_000 });
+  const saving = page.waitForEvent("download", { timeout: 200_000 });
   await page.keyboard.press("Enter");
   const shown = () => page.textContent("#film-progress");
-  await expect.poll(shown, { timeout: 60_000 }).toContain("Drawing the film");
+  await expect.poll(shown, { timeout: 100_000 }).toContain("Drawing the film");
   expect(await page.evaluate(() => document.activeElement?.textContent)).toBe("Stop");
   expect(await viewer.violations()).toEqual([]);
   const file = await saving;
@@ -101,7 +101,7 @@ test("AFilmOfABreathPlays", async () => {
   await Promise.all([empty.context().close(), viewer.close()]);
 });
 
-test("APageThatWasTakenHomeMakesAFilmWithoutANetwork", async () => {
+test("APageThatWasTakenHomeMakesAFilmWithoutANetwork", { timeout: 240_000 }, async () => {
   const path = join(outFolder, "film-page.html");
   await server.phrenic("export", "thorax", path);
   const context = await browser.newContext({ viewport: { width: 900, height: 620 }, offline: true });
