@@ -23,7 +23,7 @@ std::span<const NamedText> EnvironmentVariables();
 // Returns the precedence of settings and the format of the settings file.
 std::string SettingsText();
 
-// Returns what a user means by a word that is none of `commands`: "sessions" for "ls", "run" for "rnu", "--help" for
+// Returns what a user means by a word that `commands` does not have: "sessions" for "ls", "run" for "rnu", "--help" for
 // "lern". Empty if the word is near none of them and of the words that users type for them.
 std::string CommandMeantBy(std::string_view word, std::vector<std::string> commands);
 

@@ -46,6 +46,13 @@ inline double DomeDescent(const physiology::Subject& subject, const State& state
                 height(physiology::Placed(subject.model, state, sheet)));
 }
 
+// Records a quiet breath.
+inline auto QuietBreath(const physiology::Subject& subject) {
+  v1::Parameters parameters = subject.model.parameters;
+  parameters.MergeFrom(*FindPreset(subject.model.scene, "quiet"));
+  return physiology::Record(subject, "quiet", parameters, [](double) { return true; });
+}
+
 // Returns a section of the physiology page, from its heading to the next.
 inline std::string PhysiologyPage(const std::string& heading) {
   std::ifstream file(PHRENIC_SOURCE_DIR "/server/physiology/README.md");

@@ -43,9 +43,7 @@ TEST_P(TenBodiesBreathe, AQuietBreathWithoutFlaws) {
   const auto model = CompileBody(body->physique);
   const auto subject = physiology::Subject::Of(*model);
   ASSERT_TRUE(subject.ok()) << subject.status();
-  v1::Parameters parameters = model->parameters;
-  parameters.MergeFrom(*FindPreset(model->scene, "quiet"));
-  const auto breath = physiology::Record(**subject, "quiet", parameters, [](double) { return true; });
+  const auto breath = QuietBreath(**subject);
   ASSERT_TRUE(breath.ok()) << breath.status();
   EXPECT_EQ(breath->problem, "");
   const auto& volume = breath->of[physiology::kVolume];

@@ -19,7 +19,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-bool Nobody() { return false; }
+bool NeverCancelled() { return false; }
 
 // A server's models, table and store, which the test ends and starts again.
 class RestoreTest : public testing::Test {
@@ -73,7 +73,7 @@ class RestoreTest : public testing::Test {
     return *session;
   }
   static std::string HashAfter(Session& session, std::int64_t ticks) {
-    const auto stepped = session.Step(ticks, std::nullopt, Nobody);
+    const auto stepped = session.Step(ticks, std::nullopt, NeverCancelled);
     EXPECT_TRUE(stepped.ok()) << stepped.status();
     return stepped.ok() ? stepped->state_hash : "";
   }
@@ -138,7 +138,7 @@ TEST_F(RestoreTest, WhatACallHasReturnedSurvivesAKill) {
   const std::string left = folder_ + "/left";
   for (int i = 1; i <= 40; ++i) {
     if (i % 10 == 0) Set(*session, 0.1 * i);
-    const auto stepped = session->Step(1, std::nullopt, Nobody);
+    const auto stepped = session->Step(1, std::nullopt, NeverCancelled);
     ASSERT_TRUE(stepped.ok()) << stepped.status();
     ASSERT_EQ(stepped->session.tick(), i);
     std::filesystem::remove_all(left);
@@ -228,7 +228,7 @@ TEST_F(RestoreTest, SessionsPlayOnFromTheirStatesOnceAllAreRestored) {
   // From first to last tick, so that the whole run is stepped once.
   std::map<std::int64_t, std::string> hashes;
   for (const auto& [id, tick] : ticks) {
-    const auto stepped = Find(id)->Step(1, std::nullopt, Nobody);
+    const auto stepped = Find(id)->Step(1, std::nullopt, NeverCancelled);
     ASSERT_TRUE(stepped.ok()) << stepped.status();
     hashes[stepped->session.tick()] = stepped->state_hash;
   }
@@ -294,7 +294,7 @@ TEST_F(RestoreTest, OwnerAndWaitingUpdatesAreRestored) {
   EXPECT_TRUE(absl::IsPermissionDenied(Find("a")->CheckControl("")));
   EXPECT_TRUE(Find("a")->CheckControl(token).ok());
   EXPECT_EQ(Find("a")->status().waiting_updates(), 1);
-  ASSERT_TRUE(Find("a")->Step(9, std::nullopt, Nobody, token).ok());
+  ASSERT_TRUE(Find("a")->Step(9, std::nullopt, NeverCancelled, token).ok());
   EXPECT_EQ(Find("a")->status().parameters().breath_force(), 2);
 }
 
@@ -322,12 +322,12 @@ TEST_F(RestoreTest, ADivergedSessionIsRestoredAsDiverged) {
   wild.set_elasticity(10);
   auto session = Create("a");
   ASSERT_TRUE(session->Update(wild, std::nullopt).ok());
-  EXPECT_TRUE(absl::IsOutOfRange(session->Step(10000, std::nullopt, Nobody).status()));
+  EXPECT_TRUE(absl::IsOutOfRange(session->Step(10000, std::nullopt, NeverCancelled).status()));
   const std::string told = session->status().divergence().remedy();
   Again();
   EXPECT_EQ(Find("a")->status().state(), v1::SESSION_STATE_DIVERGED);
   EXPECT_EQ(Find("a")->status().divergence().remedy(), told);
-  EXPECT_TRUE(absl::IsFailedPrecondition(Find("a")->Step(1, std::nullopt, Nobody).status()));
+  EXPECT_TRUE(absl::IsFailedPrecondition(Find("a")->Step(1, std::nullopt, NeverCancelled).status()));
   EXPECT_TRUE(Find("a")->Reset().ok());
 }
 
@@ -368,7 +368,7 @@ TEST_F(RestoreTest, AFullDiskIsReportedAndStopsNothing) {
   for (int i = 1; i < 50 && session->status().not_saved().empty(); ++i) Set(*session, 0.1 * i);
   EXPECT_THAT(session->status().not_saved(), HasSubstr("is full"));
   Set(*session, 2);
-  EXPECT_TRUE(session->Step(10, std::nullopt, Nobody).ok());
+  EXPECT_TRUE(session->Step(10, std::nullopt, NeverCancelled).ok());
   v1::CreateSessionRequest request;
   request.mutable_source()->set_name("triangle");
   EXPECT_TRUE(absl::IsResourceExhausted(table_->Create(request).status())) << "it could not be kept";
