@@ -102,8 +102,16 @@ export class ViewerPage {
     return this.page.evaluate(() => window.phrenic!.tick());
   }
 
-  /** Returns every `stride`-th vertex of a body in the newest frame [m] and the frame's tick. */
-  sample(body: string, stride = 200): Promise<{ tick: number; points: [number, number, number][] }> {
+  /** Returns every `stride`-th vertex of a body in the newest frame [m] and its tick, once a frame of the body is decoded. */
+  async sample(body: string, stride = 200): Promise<{ tick: number; points: [number, number, number][] }> {
+    const decoded = (name: string) => {
+      try {
+        return window.phrenic!.vertex(name, 0).length === 3;
+      } catch {
+        return false;
+      }
+    };
+    await this.page.waitForFunction(decoded, body, { timeout: 60_000 });
     return this.page.evaluate(
       ([name, step]) => {
         const hook = window.phrenic!;

@@ -12,13 +12,14 @@ namespace {
 using Sessions = v1::SessionService::Stub;
 using Samples = v1::SampleService::Stub;
 
-// A WatchSamples stream, read sample by sample.
+// A WatchSamples stream, read sample by sample. It is subscribed when it is made: what is stepped later is seen.
 class SampleWatch {
  public:
   SampleWatch(const std::shared_ptr<grpc::Channel>& channel, const std::string& text)
       : stub_(v1::SampleService::NewStub(channel)) {
     context_.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(60));
     reader_ = stub_->WatchSamples(&context_, RequestOf<v1::WatchSamplesRequest>(text));
+    reader_->WaitForInitialMetadata();  // it comes with the first batch, or with the error
   }
   ~SampleWatch() {
     context_.TryCancel();
