@@ -22,6 +22,9 @@ os.environ.setdefault("GRPC_DNS_RESOLVER", "native")
 # A connection is polled every 0.2 s while no call waits, not every five: phrenicd pings it, and closes it after three
 # without an answer; and between two repeats of a call, gRPC notices no sooner that it has connected again.
 os.environ.setdefault("GRPC_CLIENT_CHANNEL_BACKUP_POLL_INTERVAL_MS", "200")
+# With fork support, which is gRPC's default in Python, fork() ends gRPC's threads first: it waits for ever if one of them
+# waits for a connection.
+os.environ.setdefault("GRPC_ENABLE_FORK_SUPPORT", "0")
 
 from . import aio, errors  # noqa: E402
 from .connection import Tls

@@ -41,6 +41,7 @@ class Requests:
         self._parts = parts_of(read)
         self._pending: deque[int] = deque()
         self._tick = session.tick
+        self._channel: Optional["Channel"] = None
         self._answers: Any = None
 
     @property
@@ -85,8 +86,8 @@ class Requests:
         """Ends the stream. While answers are pending, the session's next call finds out how far the steps were taken."""
         self._session._unsettled |= bool(self._pending)
         self._pending.clear()
-        if self._answers is not None:
-            self._answers.cancel()
+        if self._channel is not None:
+            self._channel.cancel(self._answers)
 
     def _call(self) -> Call:
         return Call(METHOD, session_pb2.AdvanceRequest(session_id=self._session.id))
@@ -102,6 +103,7 @@ class Steps(Requests):
         super().__init__(session, read)
         session._stream = self
         self._sent: queue.SimpleQueue[Optional[session_pb2.AdvanceRequest]] = queue.SimpleQueue()
+        self._channel = channel
         self._answers = channel.converse(self._call(), iter(self._sent.get, None))
 
     def __enter__(self) -> "Steps":
@@ -168,7 +170,8 @@ class AsyncSteps(Requests):
     async def __aenter__(self) -> "AsyncSteps":
         session: Any = self._session
         await session._do(session._describe(self._parts))
-        self._answers = session._begun().converse(self._call())
+        self._channel = session._begun()
+        self._answers = self._channel.converse(self._call())
         session._stream = self
         return self
 

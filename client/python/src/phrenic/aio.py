@@ -105,7 +105,7 @@ class Connection(Channel):
             async for message in answer:
                 call.each(message)
         finally:  # a receiver that raises ends the call
-            answer.cancel()
+            self.cancel(answer)
         return None
 
     async def stream(self, call: Call) -> AsyncGenerator[Any, None]:
@@ -117,7 +117,7 @@ class Connection(Channel):
         except grpc.RpcError as failed:
             raise error_of(failed) from None
         finally:
-            messages.cancel()
+            self.cancel(messages)
 
 
 class Session(SessionOperations):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ctypes
 import ipaddress
 import os
 import time
+import weakref
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Iterator, Optional, TypeVar, Union
@@ -123,6 +125,22 @@ FORKED = (
     'processes by multiprocessing.get_context("spawn"), or fork before the first call'
 )
 _first_process = 0  # that has made a channel; a forked process inherits it
+_grpc_objects: weakref.WeakSet[Any] = weakref.WeakSet()
+
+
+def _noted(grpc_object: T) -> T:
+    _grpc_objects.add(grpc_object)
+    return grpc_object
+
+
+def _keep_alive() -> None:
+    """In a forked process: gRPC's locks may be held by threads that only the parent has, so its objects are never
+    finalised here, also when the process ends: their `__del__` would wait for ever."""
+    for grpc_object in list(_grpc_objects):
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(grpc_object))
+
+
+os.register_at_fork(after_in_child=_keep_alive)
 
 
 def check_process() -> None:
@@ -141,7 +159,7 @@ class Channel:
         self.target = target
         self._process, self._closed = os.getpid(), False
         check_process()
-        self._channel = (
+        self._channel = _noted(
             api.secure_channel(target.host, credentials_of(target.tls), channel_options())
             if target.tls
             else api.insecure_channel(target.host, channel_options())
@@ -152,13 +170,19 @@ class Channel:
         """Starts a call; returns its answer, or the messages of a streaming one. Without `timeout` [s] it has no
         deadline."""
         metadata = [*self.target.metadata, *call.metadata]
-        return self._method(call)(call.request, timeout=timeout, metadata=metadata)
+        answer = self._method(call)(call.request, timeout=timeout, metadata=metadata)
+        return _noted(answer) if isinstance(answer, (grpc.Call, grpc.aio.Call)) else answer
 
     def converse(self, call: Call, *requests: Any) -> Any:
         """Starts a call whose requests are a stream, routed and without a deadline; returns its answers. `requests`: their
         iterator, for the blocking client."""
         metadata = [*self.target.metadata, *call.metadata]
-        return self._method(call)(*requests, metadata=metadata)
+        return _noted(self._method(call)(*requests, metadata=metadata))
+
+    def cancel(self, answers: Any) -> None:
+        """Ends a call. Has no effect in a forked process, whose parent has the call."""
+        if self._process == os.getpid():
+            answers.cancel()
 
     @property
     def closed(self) -> bool:
@@ -224,7 +248,7 @@ class Connection(Channel):
             for message in answer:
                 call.each(message)
         finally:  # a receiver that raises ends the call
-            answer.cancel()
+            self.cancel(answer)
         return None
 
     def stream(self, call: Call) -> Iterator[Any]:
@@ -236,4 +260,4 @@ class Connection(Channel):
         except grpc.RpcError as failed:
             raise error_of(failed) from None
         finally:
-            messages.cancel()
+            self.cancel(messages)

@@ -222,7 +222,7 @@ class Session(SessionOperations):
         except grpc.RpcError as failed:
             raise error_of(failed) from None
         finally:
-            events.cancel()
+            self._connection.cancel(events)
 
     def samples(self, measures: Sequence[str] = (), interval: float = 0.02) -> Iterator[Sample]:
         """Yields the session's measures, all or those named, at every `interval` of simulated time, whichever client steps it:
@@ -237,7 +237,7 @@ class Session(SessionOperations):
         except grpc.RpcError as failed:
             raise error_of(failed) from None
         finally:
-            batches.cancel()
+            self._connection.cancel(batches)
 
     # --- results ---
     def export(
