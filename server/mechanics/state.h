@@ -26,14 +26,14 @@ struct Pose {
 // What an integrator remembers of the step before, for one that does; only its own, and only if no other step came
 // between.
 struct History {
-  int integrator = 0;      // whose it is (v1::Integrator); 0: nobody's
+  int integrator = 0;      // the integrator that it belongs to (v1::Integrator); 0: to no integrator
   std::int64_t tick = -1;  // the state it belongs to
   double dt = 0;           // length of that step, or of its last part [s]
   Points x, v;             // at the start of it [m], [m/s]
   Points force;            // at the end of it [N]
 };
 
-// A force by which somebody pulls a vertex while the session runs (pulls.h).
+// A force by which a client pulls a vertex while the session runs (pulls.h).
 struct VertexPull {
   int vertex = 0;                                   // simulated
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  // [N]

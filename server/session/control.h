@@ -101,7 +101,7 @@ class ControlBook {
 
   // Compares in constant time, as Find does.
   bool IsOwner(std::string_view token) const;
-  // Returns the owner or person with this token; null if nobody has it. Valid until people enter or expire.
+  // Returns the owner or person with this token; null if no one has it. Valid until people enter or expire.
   Person* Find(std::string_view token);
   // Returns the person of `people` who controls; null if none does.
   const Person* Holder() const;

@@ -292,7 +292,7 @@ absl::StatusOr<Uploads::Held> Uploads::Adopt(const Requester& by, const std::str
   if (absl::Status status = (*spool)->Append(bytes); !status.ok()) return status;
   Held held{"", {sha256, name, static_cast<std::int64_t>(bytes.size())}, *std::move(spool), by.owner};
   absl::MutexLock lock(&mutex_);
-  Keep(held).IgnoreError();  // without room, whoever holds it still has it
+  Keep(held).IgnoreError();  // without room, those that hold it still have it
   return held;
 }
 

@@ -64,7 +64,7 @@ absl::StatusOr<std::shared_ptr<Viewer>> Publisher::Join(const ViewerOptions& opt
                      " viewers, and no more are allowed (--max-viewers); try again later"));
   }
   if (named_.count(options.watch_id) > 0) {
-    return absl::AlreadyExistsError(absl::StrCat("watch_id: somebody watches as ", options.watch_id));
+    return absl::AlreadyExistsError(absl::StrCat("watch_id: another viewer watches as ", options.watch_id));
   }
   auto viewer = std::make_shared<Viewer>(options, std::move(wake));
   if (!options.watch_id.empty()) named_[options.watch_id] = viewer;
@@ -101,7 +101,7 @@ absl::StatusOr<v1::AckFramesResponse> Publisher::Acknowledge(const v1::AckFrames
     absl::MutexLock lock(&mutex_);
     const auto found = named_.find(request.watch_id());
     if (found == named_.end()) {
-      return absl::NotFoundError(absl::StrCat("watch_id: nobody watches as ", request.watch_id()));
+      return absl::NotFoundError(absl::StrCat("watch_id: no viewer watches as ", request.watch_id()));
     }
     viewer = found->second;
     if (viewer->options().encoding.codec == v1::CODEC_BASIS && basis_ != nullptr) epoch = basis_->epoch;

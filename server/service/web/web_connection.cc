@@ -21,7 +21,7 @@ namespace net = boost::asio;
 constexpr std::uint32_t kMaxHeaderBytes = 16 << 10;
 constexpr std::size_t kReadBytes = 4 << 10;
 constexpr std::size_t kMaxPipelinedBytes = 64 << 10;  // of requests sent before the current one is answered
-constexpr std::size_t kSmallBodyBytes = 64 << 10;     // bodies that anybody may send, and that no budget counts
+constexpr std::size_t kSmallBodyBytes = 64 << 10;     // bodies that every caller may send, and that no budget counts
 constexpr std::chrono::seconds kLingerTime(2);
 constexpr std::size_t kLingerBytes = 1 << 20;
 constexpr std::string_view kWatchMethod = "/phrenic.v1.FrameService/WatchFrames";

@@ -18,7 +18,7 @@ class ThinLine {
   ThinLine(int server_port, double bytes_per_second);
   ~ThinLine();
   int port() const { return port_; }
-  // Carries nothing any more, as a line that was cut: nobody hears of it.
+  // Carries nothing any more, as a line that was cut: neither end is told.
   void Freeze() { frozen_ = true; }
 
  private:

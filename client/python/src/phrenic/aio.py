@@ -163,7 +163,7 @@ class Session(SessionOperations):
         session = cls.__new__(cls)
         SessionOperations.__init__(session, status, token, owned)
         session._connection, session._shared, session._creation = connection, True, None
-        # The name may be that of somebody else's scene text: no file of this machine is read.
+        # The name may be that of another person's scene text: no file of this machine is read.
         session._source = source or session_pb2.SceneSource(name=status.scene)
         return session
 

@@ -210,7 +210,7 @@ class SessionOperations:
     def _step(
         self, ticks: int, read: Sequence[str], timeout: Optional[float], again: bool = True
     ) -> Operation[Frame]:
-        """Takes steps. `again`: those that a lost connection left out are taken once more."""
+        """Takes steps. `again`: those that a lost connection left out are taken again."""
         parts, ticks = parts_of(read), whole("ticks", ticks)
         deadline = LONG if timeout is None else positive("timeout", timeout)
         self._leave_stream()
@@ -238,7 +238,7 @@ class SessionOperations:
         return self._frame_of(arrays, answer, parts)
 
     def _step_to(self, before: int, after: int, read: Sequence[str], timeout: Optional[float]) -> Operation[Frame]:
-        """After a lost connection: takes the steps that were not carried out. The run is deterministic and nobody else
+        """After a lost connection: takes the steps that were not carried out. The run is deterministic and no other client
         steps it, so the state at the tick `after` is the answer that was lost."""
         frame = yield from self._read(read)
         if frame.tick == after:

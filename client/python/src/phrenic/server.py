@@ -68,7 +68,7 @@ class Server(ServerFacts):
         return self.connection.run(session_ids())
 
     def attach(self, id: str) -> Session:
-        """Joins a session that somebody else made; closing it does not delete it."""
+        """Joins a session that another client made; closing it does not delete it."""
         return Session._of(self.connection, self.connection.run(attach(id)), "", owned=False)
 
     def close(self) -> None:
