@@ -11,6 +11,7 @@
 #include "server/mechanics/measures/readings.h"
 #include "server/physiology/live_lungs.h"
 #include "tests/bench/bullet_body.h"
+#include "tests/bench/frames.h"
 #include "tests/bench/machine.h"
 #include "tests/bench/plain_springs.h"
 #include "tests/bench/subjects.h"
@@ -128,10 +129,19 @@ class Bench {
     table.Register({kMeasures, measure, vertices, "vertex", kThorax});
     const auto lungs = [this] { benchmark::DoNotOptimize(lungs_.At(thorax_.state, thorax_.parameters)); };
     table.Register({kLungs, lungs, 0, "", kThorax});
+    RegisterFrames(table);
     table.Register(
         {"thorax, compiled from its meshes", [this] { CompileAgain(*subjects_.thorax); }, vertices, "vertex", ""});
     table.Register(
         {"diaphragm of springs, compiled", [this] { CompileAgain(*subjects_.springs); }, vertices, "vertex", ""});
+  }
+
+  void RegisterFrames(Table& table) {
+    const auto frame = [this](v1::Codec codec) {
+      return [this, codec] { frames_.Make(thorax_.state, thorax_.parameters, codec); };
+    };
+    table.Register({"thorax, a frame for viewers, raw", frame(v1::CODEC_RAW), 0, "", kThorax});
+    table.Register({"thorax, a frame for viewers, predicted", frame(v1::CODEC_PREDICTED), 0, "", kThorax});
   }
 
   void RegisterOthers(Table& table) {
@@ -170,6 +180,7 @@ class Bench {
   Points muscle_force_ = Points::Zero(3, subjects_.muscle->rest.cols());
   const physiology::LiveLungs lungs_ = *physiology::LiveLungs::Make(*subjects_.thorax);
   Run thorax_{subjects_.thorax}, thesis_{subjects_.thesis}, unlinked_{subjects_.thesis};
+  Frames frames_{subjects_.thorax};
   Run few_{subjects_.few_links}, many_{subjects_.many_links};
 #ifdef PHRENIC_BULLET
   BulletBody once_{subjects_.springs->rest, subjects_.springs->inverse_mass, springs_, 1};

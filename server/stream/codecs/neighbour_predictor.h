@@ -3,20 +3,14 @@
 #ifndef PHRENIC_SERVER_STREAM_CODECS_NEIGHBOUR_PREDICTOR_H_
 #define PHRENIC_SERVER_STREAM_CODECS_NEIGHBOUR_PREDICTOR_H_
 
-#include <array>
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "server/stream/codecs/codec.h"
+#include "server/stream/codecs/encoding_kernel.h"
 #include "server/stream/decoder/neighbour_weights.h"
 
 namespace phrenic::stream {
-
-// Three per place of NeighbourWeights::order.
-using Steps = std::vector<std::int32_t>;
-
-inline constexpr double kFurthest = 1 << 30;  // [steps] that are encoded
 
 // The residual d_i - floor(sum w_j d_j) is small where neighbours are similar. Residuals have two bits each; larger
 // ones continue in an overflow that is compressed separately. proto/README.md specifies the bytes. Immutable;
@@ -33,9 +27,6 @@ class NeighbourPredictor {
   Steps Residuals(const Steps& steps) const;
 
  private:
-  // Returns floor(sum w_j d_j + 1/2) at a place, from the steps of earlier places.
-  std::array<std::int64_t, 3> Predict(const Steps& steps, int place) const;
-
   const NeighbourWeights neighbours_;
 };
 

@@ -2,6 +2,8 @@
 #ifndef PHRENIC_SERVER_STREAM_CODECS_PREDICTED_H_
 #define PHRENIC_SERVER_STREAM_CODECS_PREDICTED_H_
 
+#include <vector>
+
 #include "server/stream/codecs/codec.h"
 #include "server/stream/codecs/neighbour_predictor.h"
 
@@ -17,7 +19,7 @@ class PredictedCodec final : public Codec {
 
  private:
   const NeighbourPredictor predictor_;
-  const Floats rest_;  // in the order of places
+  const std::vector<float> rest_;  // three per place
 };
 
 }  // namespace phrenic::stream
