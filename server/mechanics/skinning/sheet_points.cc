@@ -4,19 +4,10 @@
 #include <algorithm>
 #include <vector>
 
+#include "server/mechanics/skinning/sheet_points_kernel.h"
+
 namespace phrenic {
 namespace {
-
-constexpr double kSmallestStretch = 1.0 / 8;  // of the area
-
-// What a vertex of the middle surface passes on, or its time derivative: position, area stretch, normal and padding.
-// Before they are complete, the sums over its triangles take the places of stretch and normal.
-struct alignas(64) SheetNode {
-  double numbers[8];
-  auto position() { return Eigen::Map<Eigen::Vector3d>(numbers); }
-  auto normal() { return Eigen::Map<Eigen::Vector3d>(numbers + 4); }
-  double& stretch() { return numbers[3]; }
-};
 
 using NodeSum = Eigen::Matrix<double, 8, 1>;
 
@@ -101,37 +92,35 @@ struct LiftedPoint {
   }
 };
 
+// Completes what the nodes pass on.
 template <bool kRates>
-void EvaluateSheet(const DriverSheet& sheet, std::span<const TriangleBinding> bindings, const EvalContext& at,
-                   MutablePoints x, MutablePoints v) {
+SheetNodes& NodesOf(const DriverSheet& sheet, const EvalContext& at) {
   SheetNodes& nodes = at.scratch.Get<SheetNodes>();
   StartSums(sheet, at.x, nodes.at);
   if (kRates) StartSums(sheet, at.v, nodes.rates);
   AddUpTriangles<kRates>(sheet, nodes);
   FinishSums<kRates>(sheet, nodes);
-  Eigen::Index i = 0;
-  for (const TriangleBinding& binding : bindings) {
-    const NodeSum sum = WeightedNode(nodes.at, sheet, binding);
-    const LiftedPoint lifted(sum, binding.height);
-    x.col(i) = sum.head<3>() + lifted.height * lifted.normal;
-    if constexpr (kRates) {
-      const NodeSum rates = WeightedNode(nodes.rates, sheet, binding);
-      v.col(i) = rates.head<3>() + lifted.Rate(rates);
-    }
-    ++i;
-  }
+  return nodes;
 }
 
 }  // namespace
 
 void PlaceOnSheet(const DriverSheet& sheet, std::span<const TriangleBinding> bindings, const EvalContext& at,
                   MutablePoints x) {
-  EvaluateSheet<false>(sheet, bindings, at, x, x);
+  PlaceBindings(bindings, NodesOf<false>(sheet, at).at.data(), sheet.first_vertex, x.data());
 }
 
 void MoveOnSheet(const DriverSheet& sheet, std::span<const TriangleBinding> bindings, const EvalContext& at,
                  MutablePoints x, MutablePoints v) {
-  EvaluateSheet<true>(sheet, bindings, at, x, v);
+  const SheetNodes& nodes = NodesOf<true>(sheet, at);
+  Eigen::Index i = 0;
+  for (const TriangleBinding& binding : bindings) {
+    const NodeSum sum = WeightedNode(nodes.at, sheet, binding), rates = WeightedNode(nodes.rates, sheet, binding);
+    const LiftedPoint lifted(sum, binding.height);
+    x.col(i) = sum.head<3>() + lifted.height * lifted.normal;
+    v.col(i) = rates.head<3>() + lifted.Rate(rates);
+    ++i;
+  }
 }
 
 }  // namespace phrenic
