@@ -16,10 +16,9 @@ import shlex
 import subprocess
 import sys
 
-# clang reads the commands of gcc, and calls it shadowing if a local has the name of something in another file of a unit. It
-# finds 0 as a pointer while it compiles, for nothing. Of kernels it reads the code for one instruction set: that for the
-# others is the same text.
-FOR_CLANG = ["-Wno-unknown-warning-option", "-Wno-shadow", "-Wzero-as-null-pointer-constant", "-DHWY_COMPILE_ONLY_STATIC"]
+# clang reads the commands of gcc, and calls it shadowing if a local has the name of something in another file of a unit. Of
+# kernels it reads the code for one instruction set: that for the others is the same text.
+FOR_CLANG = ["-Wno-unknown-warning-option", "-Wno-shadow", "-DHWY_COMPILE_ONLY_STATIC"]
 
 
 def options_of(entry):
