@@ -16,8 +16,9 @@ import shlex
 import subprocess
 import sys
 
-# clang reads the commands of gcc, and calls it shadowing if a local has the name of something in another file of a unit.
-FOR_CLANG = ["-Wno-unknown-warning-option", "-Wno-shadow"]
+# clang reads the commands of gcc, and calls it shadowing if a local has the name of something in another file of a unit. Of
+# kernels it reads the code for one instruction set: that for the others is the same text.
+FOR_CLANG = ["-Wno-unknown-warning-option", "-Wno-shadow", "-DHWY_COMPILE_ONLY_STATIC"]
 
 
 def options_of(entry):
@@ -64,6 +65,12 @@ def fault_of(entry, folder, tool):
     return ""
 
 
+def size_of(entry):
+    """The bytes of a file, and of those that it includes if it is of a unity build."""
+    text = pathlib.Path(entry["file"]).read_text()
+    return len(text) + sum(os.path.getsize(path) for path in re.findall(r'^#include "(/.*)"', text, re.MULTILINE))
+
+
 def main(folder, pattern, tool):
     os.chdir(pathlib.Path(__file__).resolve().parent.parent)
     folder = os.path.abspath(folder)
@@ -72,7 +79,7 @@ def main(folder, pattern, tool):
     if not entries:
         sys.exit(f"units.py: no file of {folder} fits {pattern}.")
     # Large files first, so that none is left over at the end.
-    entries.sort(key=lambda entry: -pathlib.Path(entry["file"]).stat().st_size)
+    entries.sort(key=size_of, reverse=True)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         faults = [fault for fault in pool.map(lambda entry: fault_of(entry, folder, tool), entries) if fault]
     print("\n".join(faults), end="")

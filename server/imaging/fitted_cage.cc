@@ -123,11 +123,13 @@ Eigen::VectorXd FitRadius(const PlateGrid& grid, const WallEvidence& evidence) {
   }
   for (int round = 0; round < kRounds; ++round) {
     radius = plate.Fit(weights, observed);
+    const Eigen::VectorXd before = weights;
     for (int i = 0; i < grid.nodes(); ++i) {
       if (weights[i] == 0) continue;
       const double inside = evidence.touches[i] ? kTouching : kFurtherOut;
       weights[i] = radius[i] > observed[i] ? kNearer : inside;
     }
+    if (weights == before) break;  // the next round would give the same bits
   }
   return radius.cwiseMax(kNarrowest);
 }

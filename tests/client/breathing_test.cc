@@ -48,8 +48,8 @@ TEST(Physiology, PrintsValueRangeAndVerdict) {
 
 TEST(Physiology, FailsTheCheckIfARowIsOutside) {
   const std::string junit = Scratch("breaths.xml");
-  const Outcome study = Phrenic(
-      {"physiology", "thorax", "--resolution", "20", "--preset", "quiet", "--check", "--junit", junit, "-o", "csv"});
+  const Outcome study = Phrenic({"physiology", "thorax-thesis", "--resolution", "20", "--preset", "quiet", "--check",
+                                 "--junit", junit, "-o", "csv"});
   EXPECT_EQ(study.code, 4) << study.err;
   EXPECT_THAT(study.out, HasSubstr("breath,what,unit,value,low,high,verdict,note,source"));
   EXPECT_THAT(ReadAll(junit), HasSubstr("<failure"));

@@ -27,7 +27,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-constexpr int kAtATime = 4, kMostSeconds = 5;  // processes; each, of CPU time
+constexpr int kAtATime = 4, kMostSeconds = 3;  // processes; each, of CPU time
 
 // Returns a path of a new file with these bytes, whose ending is that of a format.
 std::string OddFile(const std::string& name, const std::string& bytes) { return WriteScratch("odd-" + name, bytes); }
@@ -198,7 +198,9 @@ TEST(OddArguments, AsAllThatACommandRequiresEndItWithAnError) {
   std::size_t next = 0;
   for (const Subject& subject : Subjects()) {
     runner.Run(subject.path);
-    for (int k = 0; k < kValuesACommand; ++k) runner.Run(Line(subject, -1, OddValues()[next++ % OddValues().size()]));
+    // phantom writes a large file for every value that it accepts.
+    const int values = subject.path[0] == "phantom" ? 1 : kValuesACommand;
+    for (int k = 0; k < values; ++k) runner.Run(Line(subject, -1, OddValues()[next++ % OddValues().size()]));
   }
 }
 
@@ -208,7 +210,7 @@ TEST(OddArguments, AsOneOptionEndTheCommandOrAreAccepted) {
   Runner runner;
   std::size_t next = 0;
   for (const Subject& subject : Subjects()) {
-    if (subject.path[0] == "phantom") continue;  // writes a large file for every value that it accepts
+    if (subject.path[0] == "phantom") continue;
     for (int i = 0; i < static_cast<int>(subject.arguments.size()); ++i) {
       for (int k = 0; k < kValuesAnOption; ++k) runner.Run(Line(subject, i, OddValues()[next++ % OddValues().size()]));
     }

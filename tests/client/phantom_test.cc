@@ -12,8 +12,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Outcome BreathPhantom(const std::string& folder, std::vector<std::string> more) {
-  std::vector<std::string> arguments = {"phantom",  "thorax", "--resolution", "12",  "--spacing", "6",
+Outcome BreathPhantom(const std::string& folder, std::vector<std::string> more, const char* spacing_mm = "6") {
+  std::vector<std::string> arguments = {"phantom",  "thorax", "--resolution", "12",  "--spacing", spacing_mm,
                                         "--phases", "2",      "--out",        folder};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return Phrenic(arguments);
@@ -61,7 +61,9 @@ TEST(BreathingPhantom, ThatCannotBeIsAnErrorWithTheRemedy) {
 
 TEST(BreathingPhantom, OfASmallPersonIsTheAdultsScaled) {
   const auto lung = [](const char* height) {
-    const Outcome made = BreathPhantom(Scratch(height), {"--physique", std::string("height=") + height, "-o", "json"});
+    // The surface's volume is that of any voxels.
+    const Outcome made =
+        BreathPhantom(Scratch(height), {"--physique", std::string("height=") + height, "-o", "json"}, "10");
     EXPECT_EQ(made.code, 0) << made.err;
     return made.json()["phases"][0]["structures"]["lung_right"]["surface_ml"].get<double>();
   };

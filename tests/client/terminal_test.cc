@@ -39,7 +39,7 @@ TEST(Help, FitsTheTerminal) {
 }
 
 TEST(Progress, ShowsTheRemainingTimeOnATerminal) {
-  PseudoTerminal terminal({kProgram, "run", "hanging-sheet", "--seconds", "3600"}, 60);
+  PseudoTerminal terminal({kProgram, "run", "hanging-sheet", "--seconds", "1800"}, 60);
   EXPECT_THAT(terminal.ReadUntil("s left"), HasSubstr("stepping ["));
 }
 

@@ -57,7 +57,7 @@ export async function endAll(browser: Browser | undefined, server: Server | unde
  * Draws the pages of `context` at most eight times a second, whatever the machine could: tests look at what is drawn, and
  * without a graphics card each drawing takes a core for 50 ms, which the simulation and the other browsers need.
  */
-async function slowDisplay(context: BrowserContext): Promise<void> {
+export async function slowDisplay(context: BrowserContext): Promise<void> {
   await context.addInitScript(() => {
     const native = window.requestAnimationFrame.bind(window);
     window.requestAnimationFrame = (draw) => window.setTimeout(() => native(draw), 110);

@@ -164,13 +164,13 @@ describe("the thorax compared with its diaphragm, its left side higher", () => {
     await found();
     expect(await measure("hd_max")).toBeGreaterThan(5);
     expect(await measure("mean_a_to_b")).toBeLessThan(5);
-    await viewer.page.waitForTimeout(4000);
+    await viewer.page.waitForTimeout(1500);
     await viewer.saveScreenshot("compare-thorax");
     for (const name of ["Ribs", "Sternum", "Costal cartilages", "Lungs", "Heart"]) {
       const box = viewer.page.locator(".layer-name", { hasText: name }).locator("input");
       if ((await box.count()) === 1) await box.uncheck();
     }
-    await viewer.page.waitForTimeout(4000);
+    await viewer.page.waitForTimeout(1500);
     await viewer.saveScreenshot("compare-diaphragm");
     expect(viewer.consoleErrors).toEqual([]);
     await viewer.close();

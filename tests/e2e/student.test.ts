@@ -1,7 +1,7 @@
 import { join } from "node:path";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { endAll, startAll, ViewerPage } from "./browser";
+import { endAll, slowDisplay, startAll, ViewerPage } from "./browser";
 import { keysOfSources } from "../web/language/keys";
 import { outFolder, type Server } from "./server";
 
@@ -152,6 +152,7 @@ function unmarked(): string[] {
 
 test("NoTextOfTheStudentViewIsWithoutATranslation", async () => {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, locale: "de-DE" });
+  await slowDisplay(context);
   await context.route("**/languages/de.json", (route) => route.fulfill({ json: marked }));
   const page = await context.newPage();
   const left = async () => (await page.evaluate(unmarked)).filter((text) => !alike.test(text));
@@ -173,6 +174,7 @@ test("NoTextOfTheStudentViewIsWithoutATranslation", async () => {
 
 test("TheLanguageIsChosenAndKeptAndNothingIsCutOff", async () => {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, locale: "es-ES" });
+  await slowDisplay(context);
   const page = await context.newPage();
   await page.goto(`${server.url}?session=thorax&lesson=paralysis&step=2`);
   await page.getByRole("heading", { name: "El nervio derecho está cortado" }).waitFor();

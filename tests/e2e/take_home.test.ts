@@ -12,8 +12,8 @@ import { outFolder, type Server } from "./server";
 let server: Server;
 let browser: Browser;
 
-/** Of a breath [s]: a short one, since a film takes several times as long as its breath where the processor draws. */
-const breathLength = 1.5;
+/** Of a breath [s]: a short one, since a second of a film has 25 pictures, each of which takes the processor a second. */
+const breathLength = 0.8;
 
 beforeAll(async () => {
   [browser, server] = await startAll();
@@ -76,7 +76,7 @@ test("AFilmOfABreathPlays", { timeout: 240_000 }, async () => {
   const path = join(outFolder, "breath.webm");
   await file.saveAs(path);
   const empty = await (await browser.newContext()).newPage();
-  const film = await watch(empty, await readFile(path), [0.02, 0.4, 0.8]);
+  const film = await watch(empty, await readFile(path), [0.02, 0.2, 0.4]);
   for (const [i, each] of film.pictures.entries()) await writeFile(join(outFolder, `film-${i}.png`), each, "base64");
   console.log(
     `film: ${film.width} x ${film.height}, ${film.duration.toFixed(2)} s, ${(statSync(path).size / 1e6).toFixed(2)} MB, made in ${seconds.toFixed(0)} s; moved ${film.moved.map((each) => each.toFixed(3)).join(" ")}`,
@@ -113,7 +113,7 @@ test("APageThatWasTakenHomeMakesAFilmWithoutANetwork", { timeout: 240_000 }, asy
   await page.waitForSelector("#loading", { state: "hidden", timeout: 30_000 });
   await page.locator("summary", { hasText: "A film of this breath" }).click();
   const [file] = await Promise.all([page.waitForEvent("download", { timeout: 100_000 }), page.click("#film")]);
-  const film = await watch(await context.newPage(), await readFile((await file.path())!), [0.02, 0.7]);
+  const film = await watch(await context.newPage(), await readFile((await file.path())!), [0.02, 0.4]);
   expect(Math.abs(film.duration - breathLength)).toBeLessThan(0.2);
   expect(film.moved[0]).toBeGreaterThan(0.001);
   const [picture] = await Promise.all([page.waitForEvent("download", { timeout: 100_000 }), page.click("#animation")]);

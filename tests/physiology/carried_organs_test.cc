@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
 
 #include "server/mechanics/skinning/body_points.h"
@@ -76,8 +77,10 @@ TEST_P(CarriedOrgans, DoNotPierceTheSheetAndKeepTheirSize) {
   }
 }
 
-// Returns the model at the end of an inspiration.
-State AtEndOfInspiration(const Model& model, const char* preset) {
+// Returns the model at the end of an inspiration, computed once for each preset.
+const State& AtEndOfInspiration(const Model& model, const std::string& preset) {
+  static std::map<std::string, State>& states = *new std::map<std::string, State>;
+  if (const auto found = states.find(preset); found != states.end()) return found->second;
   v1::Parameters parameters = model.parameters;
   parameters.MergeFrom(*FindPreset(model.scene, preset));
   State state = model.InitialState();
@@ -85,7 +88,7 @@ State AtEndOfInspiration(const Model& model, const char* preset) {
   while (state.time < 0.55 * parameters.breath_length()) {
     if (!Step(model, parameters, 1e-3, state, work).ok()) ADD_FAILURE() << state.time;
   }
-  return state;
+  return states.emplace(preset, std::move(state)).first->second;
 }
 
 // Returns how far the middle of a body has moved down [mm].

@@ -6,6 +6,7 @@
 
 #include <fstream>
 #include <functional>
+#include <map>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -51,6 +52,29 @@ inline auto QuietBreath(const physiology::Subject& subject) {
   v1::Parameters parameters = subject.model.parameters;
   parameters.MergeFrom(*FindPreset(subject.model.scene, "quiet"));
   return physiology::Record(subject, "quiet", parameters, [](double) { return true; });
+}
+
+// The thorax with bodies of 6 mm, and a breath of a preset without a search for flaws: compiled and recorded once for
+// all tests of the program.
+inline const std::shared_ptr<const Model>& CoarseThorax() {
+  static const std::shared_ptr<const Model> model = CompileShipped("thorax", 6);
+  return model;
+}
+
+inline const std::shared_ptr<const physiology::Subject>& CoarseSubject() {
+  static const std::shared_ptr<const physiology::Subject> subject = *physiology::Subject::Of(*CoarseThorax());
+  return subject;
+}
+
+inline const physiology::Recording& CoarseBreath(const std::string& preset) {
+  static std::map<std::string, physiology::Recording>& breaths = *new std::map<std::string, physiology::Recording>;
+  const auto found = breaths.find(preset);
+  if (found != breaths.end()) return found->second;
+  v1::Parameters parameters = CoarseThorax()->parameters;
+  parameters.MergeFrom(*FindPreset(CoarseThorax()->scene, preset));
+  auto breath = physiology::Record(
+      *CoarseSubject(), preset, parameters, [](double) { return true; }, physiology::FlawSearch::kNever);
+  return breaths.emplace(preset, *std::move(breath)).first->second;
 }
 
 // Returns a section of the physiology page, from its heading to the next.

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
-
 #include "server/mechanics/step/step.h"
 #include "server/mesh/topology.h"
 #include "server/physiology/lung_breath.h"
@@ -21,26 +19,15 @@ constexpr size_t kRightLung = 0, kLeftLung = 1;
 class LiveLungsTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    model_ = CompileShipped("thorax", 6);
-    subject_ = *physiology::Subject::Of(*model_);
+    model_ = CoarseThorax();
     lungs_ = std::make_unique<LiveLungs>(*LiveLungs::Make(*model_));
   }
   static void TearDownTestSuite() {
-    breaths_.clear();
     lungs_.reset();
-    subject_.reset();
     model_.reset();
   }
 
-  static const physiology::Recording& Breath(const std::string& preset) {
-    const auto found = breaths_.find(preset);
-    if (found != breaths_.end()) return found->second;
-    v1::Parameters parameters = model_->parameters;
-    parameters.MergeFrom(*FindPreset(model_->scene, preset));
-    auto breath = physiology::Record(
-        *subject_, preset, parameters, [](double) { return true; }, physiology::FlawSearch::kNever);
-    return breaths_.emplace(preset, *std::move(breath)).first->second;
-  }
+  static const physiology::Recording& Breath(const std::string& preset) { return CoarseBreath(preset); }
   // What the lungs gain from the beginning of a breath to its peak.
   static std::vector<LungMoment> Gained(const std::string& preset) {
     const physiology::Recording& breath = Breath(preset);
@@ -58,14 +45,12 @@ class LiveLungsTest : public testing::Test {
   }
 
   inline static std::shared_ptr<const Model> model_;
-  inline static std::shared_ptr<const physiology::Subject> subject_;
   inline static std::unique_ptr<LiveLungs> lungs_;
-  inline static std::map<std::string, physiology::Recording> breaths_;
 };
 
 // The reduction: few shapes beside the full solution, over the inside, relative to the root mean square displacement.
 TEST_F(LiveLungsTest, MovesAsTheFullSolutionWithinFivePerCent) {
-  const auto full = *physiology::BreathingLungs::Make(*subject_, {});
+  const auto full = *physiology::BreathingLungs::Make(*CoarseSubject(), {});
   for (const char* preset : {"quiet", "deep", "palsy-right", "ventilator", "upright"}) {
     const std::vector<LungMotion> motions = full.Motions(Breath(preset));
     const std::vector<LungMoment> gained = Gained(preset);
@@ -129,7 +114,7 @@ TEST_F(LiveLungsTest, RestsInTheStateOfRest) {
 
 // The regions agree with those that `phrenic lungs` averages over points of the full solution.
 TEST_F(LiveLungsTest, HasTheRegionsOfTheFullSolution) {
-  const auto full = *physiology::BreathingLungs::Make(*subject_, {});
+  const auto full = *physiology::BreathingLungs::Make(*CoarseSubject(), {});
   const auto readings = full.Readings(full.Motions(Breath("quiet")));
   const std::vector<LungMoment> gained = Gained("quiet");
   for (const size_t lung : {kRightLung, kLeftLung}) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <map>
 
 #include "server/mechanics/compile/presets.h"
 #include "tests/physiology/generated_thorax.h"
@@ -22,22 +21,15 @@ constexpr size_t kRight = 0, kLeft = 1;
 class LungBreath : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    model_ = CompileShipped("thorax", 6);
-    subject_ = *Subject::Of(*model_);
+    model_ = CoarseThorax();
+    subject_ = CoarseSubject();
   }
   static void TearDownTestSuite() {
-    breaths_.clear();
     subject_.reset();
     model_.reset();
   }
 
-  static const physiology::Recording& Breath(const std::string& preset) {
-    const auto found = breaths_.find(preset);
-    if (found != breaths_.end()) return found->second;
-    auto breath = physiology::Record(
-        *subject_, preset, Parameters(preset), [](double) { return true; }, physiology::FlawSearch::kNever);
-    return breaths_.emplace(preset, *std::move(breath)).first->second;
-  }
+  static const physiology::Recording& Breath(const std::string& preset) { return CoarseBreath(preset); }
   static v1::Parameters Parameters(const std::string& preset) {
     v1::Parameters parameters = model_->parameters;
     parameters.MergeFrom(*FindPreset(model_->scene, preset));
@@ -62,7 +54,6 @@ class LungBreath : public testing::Test {
 
   inline static std::shared_ptr<const Model> model_;
   inline static std::shared_ptr<const Subject> subject_;
-  inline static std::map<std::string, physiology::Recording> breaths_;
 };
 
 TEST_F(LungBreath, TouchesDiaphragmWallAndMediastinum) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "server/imaging/surfaces/derived_bodies.h"
@@ -42,6 +43,7 @@ class SurfacePatient : public testing::Test {
     subject_ = *physiology::Subject::Of(*model_);
   }
   static void TearDownTestSuite() {
+    breaths_.clear();
     subject_.reset();
     model_.reset();
   }
@@ -55,12 +57,13 @@ class SurfacePatient : public testing::Test {
     parameters.MergeFrom(*FindPreset(model_->scene, preset));
     return parameters;
   }
-  static physiology::Recording Breathe(const std::string& preset) {
+  static const physiology::Recording& Breathe(const std::string& preset) {
+    if (const auto found = breaths_.find(preset); found != breaths_.end()) return found->second;
     auto recording = physiology::Record(
         *subject_, preset, With(preset), [](double) { return true; }, physiology::FlawSearch::kNever);
     EXPECT_TRUE(recording.ok()) << recording.status();
     EXPECT_EQ(recording->problem, "");
-    return *std::move(recording);
+    return breaths_.emplace(preset, *std::move(recording)).first->second;
   }
   static double Measure(const std::string& name, const v1::Parameters& parameters, const State& state,
                         Workspace& work) {
@@ -71,6 +74,7 @@ class SurfacePatient : public testing::Test {
 
   inline static std::shared_ptr<const Model> model_;
   inline static std::unique_ptr<const physiology::Subject> subject_;
+  inline static std::map<std::string, physiology::Recording> breaths_;
 };
 
 TEST_F(SurfacePatient, WithoutDriveNothingMoves) {
@@ -130,7 +134,7 @@ TEST_F(SurfacePatient, VolumeIsTheFlowIntegratedAndThatOfTheCavity) {
   }
   EXPECT_GT(greatest, 0.4e-3);
   EXPECT_LT(worst, 1e-3 * greatest);
-  const physiology::Recording quiet = Breathe("quiet");
+  const physiology::Recording& quiet = Breathe("quiet");
   const auto& volume = quiet.of[physiology::kVolume];
   const double grown = physiology::CavityGrowth(*model_, subject_->parts, quiet.base, quiet.peak);
   EXPECT_NEAR(grown / (volume[quiet.peak_sample] - volume[0]), 1, 0.02);
@@ -140,7 +144,7 @@ TEST_F(SurfacePatient, AParalysedSideMovesLessThanTheOther) {
   const auto range = [](const physiology::Recording& breath, physiology::Quantity quantity) {
     return breath.of[quantity][0] - breath.of[quantity][breath.peak_sample];
   };
-  const physiology::Recording quiet = Breathe("quiet"), palsy = Breathe("palsy-right");
+  const physiology::Recording &quiet = Breathe("quiet"), &palsy = Breathe("palsy-right");
   const double right = range(palsy, physiology::kRightApex), left = range(palsy, physiology::kLeftApex);
   std::printf("descent of right and left dome: quiet %.1f, %.1f mm; right palsy %.1f, %.1f mm\n",
               1e3 * range(quiet, physiology::kRightApex), 1e3 * range(quiet, physiology::kLeftApex), 1e3 * right,

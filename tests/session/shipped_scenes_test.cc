@@ -37,7 +37,7 @@ TEST_P(ShippedScene, RunsAndRepeats) {
   for (int run = 0; run < 2; ++run) {
     State state = (*model)->InitialState();
     Workspace work = (*model)->MakeWorkspace();
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 12; ++i) {
       const absl::Status stepped = Step(**model, parameters, parameters.time_step(), state, work);
       ASSERT_TRUE(stepped.ok()) << stepped << " at step " << i;
     }
