@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/nifti.h"
 #include "server/imaging/patient/patient.h"
 #include "server/schema/schema.h"

@@ -1,5 +1,5 @@
 // Labels are known by their name, by its words, or by the words of their code.
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

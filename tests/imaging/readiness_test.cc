@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/patient/patient_scene.h"
 #include "server/imaging/phantom.h"
 

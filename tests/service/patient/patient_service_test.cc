@@ -5,7 +5,7 @@
 #include "phrenic/v1/patients.grpc.pb.h"
 #include "phrenic/v1/upload.grpc.pb.h"
 #include "server/imaging/gzip.h"
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/nifti.h"
 #include "server/imaging/phantom.h"
 #include "tests/service/guarded_server.h"
