@@ -64,7 +64,7 @@ function names(parts: string[]): string {
 }
 
 /** Returns the name of a body, "rib-5-left", in the page's language. */
-function partName(body: string): string {
+export function partName(body: string): string {
   if (body === "stomach-or-spleen") return t("stomach or spleen");
   return termsOf(body.replace("-lobe-", "-"))[0]?.name ?? body;
 }

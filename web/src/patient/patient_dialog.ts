@@ -3,7 +3,7 @@ import { make } from "../dom/elements";
 import { alertMessage } from "../dom/rows";
 import { type PatientReport, ReadinessVerdict } from "../gen/phrenic/v1/patient_pb";
 import { fixed, t } from "../language/translate";
-import { findingWords } from "./finding_words";
+import { findingWords, partName } from "./finding_words";
 import { LabelTable } from "./label_table";
 import { type Dropped, droppedFiles, type FoundFiles } from "./patient_files";
 import { type ImportState, PatientImport } from "./patient_import";
@@ -129,7 +129,7 @@ export class PatientDialog {
       sending: t("Sending the segmentation…"),
       reading: t("Reading the labels…"),
       opening: t("Compiling the scene…"),
-      making: t("Making the patient: {0}", state.kind === "making" ? state.doing : ""),
+      making: t("Making the patient: {0}", state.kind === "making" ? stepName(state.doing) : ""),
     }[state.kind as "sending"];
     const bar = make("progress", { max: 1, ariaLabel: t("Progress of the patient") });
     if (done !== undefined) bar.value = done;
@@ -195,4 +195,10 @@ export class PatientDialog {
     anyway.onclick = () => void this.make(true);
     return anyway;
   }
+}
+
+/** Returns a step of the server, such as a body, in the page's language. */
+function stepName(doing: string): string {
+  if (doing === "reading") return t("reading the labels");
+  return doing.startsWith("waiting") ? t("waiting for earlier patients") : partName(doing);
 }
