@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "server/imaging/labels/label_map.h"
@@ -73,7 +74,8 @@ TEST(LabelMaps, ShippedMapsNameKnownStructures) {
     const v1::LabelMap read = *ReadLabelMap(map);
     EXPECT_FALSE(read.tool().empty()) << map;
     std::set<int> numbers;
-    for (const v1::LabelMeaning& label : WithNamesOf(common, read).labels()) {
+    const v1::LabelMap renamed = WithNamesOf(common, read);
+    for (const v1::LabelMeaning& label : renamed.labels()) {
       EXPECT_TRUE(numbers.insert(label.number()).second) << map << " " << label.number();
       EXPECT_TRUE(names.contains(label.name())) << map << " " << label.name();
       EXPECT_NE(label.what_case(), v1::LabelMeaning::WHAT_NOT_SET) << map << " " << label.name();
@@ -99,7 +101,8 @@ TEST(LabelMaps, Vista3dHasItsOwnNumbers) {
                                                {"sternum", 122}};
   for (const v1::LabelMeaning& label : map.labels()) {
     const auto known = expected.find(label.name());
-    if (known != expected.end()) EXPECT_EQ(label.number(), known->second) << label.name();
+    if (known == expected.end()) continue;
+    EXPECT_EQ(label.number(), known->second) << label.name();
   }
   EXPECT_EQ(map.labels_size(), 3 + 5 + 17 + 24 + 3);
 }

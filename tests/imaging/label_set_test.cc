@@ -28,9 +28,14 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using Files = std::map<std::string, LabelVolume>;
 
+const v1::LabelMap& Common() {
+  static const v1::LabelMap map = *ReadLabelMap(kNamesMap);
+  return map;
+}
+
 const LabelVolume& Whole() {
   static const LabelVolume whole = [] {
-    LabelVolume volume = *MakePhantom(*FindPhantomBody("adult"), {6, 0, 0, 1}, *ReadLabelMap(kNamesMap));
+    LabelVolume volume = *MakePhantom(*FindPhantomBody("adult"), {6, 0, 0, 1}, Common());
     volume.names.clear();
     return volume;
   }();
@@ -40,7 +45,7 @@ const LabelVolume& Whole() {
 // Returns the volume with other numbers; labels that become 0 are left out.
 LabelVolume Renumbered(const std::function<int(const v1::LabelMeaning&)>& number) {
   std::vector<Label> becomes(65536);
-  for (const v1::LabelMeaning& label : ReadLabelMap(kNamesMap)->labels()) {
+  for (const v1::LabelMeaning& label : Common().labels()) {
     becomes[label.number()] = static_cast<Label>(number(label));
   }
   LabelVolume volume = Whole();
@@ -76,7 +81,7 @@ absl::StatusOr<LabelVolume> Merge(const Files& files) {
 std::map<std::string, std::size_t> Voxels(const LabelVolume& volume) {
   std::vector<std::string> remarks;
   LabelVolume united = volume;
-  const v1::LabelMap map = UniteLabels(Resolve(WithCommonNames(*ReadLabelMap(kNamesMap)), volume, remarks), united);
+  const v1::LabelMap map = UniteLabels(Resolve(WithCommonNames(Common()), volume, remarks), united);
   const std::map<Label, Extent> extents = Extents(united);
   std::map<std::string, std::size_t> voxels;
   for (const v1::LabelMeaning& label : map.labels()) {
@@ -111,14 +116,14 @@ std::string Nifti(const LabelVolume& volume) { return Deflate(WriteNifti(volume)
 
 TEST(LabelSet, AFileForEachStructureIsTheWholeVolume) {
   Files files;
-  for (const v1::LabelMeaning& label : ReadLabelMap(kNamesMap)->labels()) {
+  for (const v1::LabelMeaning& label : Common().labels()) {
     LabelVolume alone = Alone(label.name());
     if (!Extents(alone).empty()) files.emplace("case 12/" + label.name() + ".nii.gz", std::move(alone));
   }
   const absl::StatusOr<LabelVolume> merged = Merge(files);
   ASSERT_TRUE(merged.ok()) << merged.status();
   LabelVolume named = Whole();
-  for (const v1::LabelMeaning& label : ReadLabelMap(kNamesMap)->labels()) named.names[label.number()] = label.name();
+  for (const v1::LabelMeaning& label : Common().labels()) named.names[label.number()] = label.name();
   EXPECT_EQ(Voxels(*merged), Voxels(named));
   EXPECT_GT(Voxels(*merged).size(), 40U);
 }

@@ -173,7 +173,8 @@ TEST_F(ReadinessTest, FactsAreThoseOfTheSentence) {
   EXPECT_NEAR(finding.values(0), 80, 1e-6);
   SetSheet(0.2, 0.19);
   Crop(0, volume_.size.z() / 2);
-  for (const v1::ReadinessFinding& each : Judge().findings()) {
+  const v1::Readiness slab = Judge();
+  for (const v1::ReadinessFinding& each : slab.findings()) {
     if (each.kind() != v1::FINDING_KIND_LUNG_CUT) continue;
     EXPECT_THAT(each.what(), HasSubstr(each.parts(0)));
     EXPECT_EQ(each.parts(1), "upper");
