@@ -181,7 +181,9 @@ TEST(LabelSet, PartsCountBeforeTheWhole) {
     return label.anatomy().structure() == v1::STRUCTURE_LUNG && label.anatomy().side() == v1::SIDE_LEFT ? 1 : 0;
   });
   LabelVolume lobe = lung;
-  for (std::size_t at = 0; at < lobe.labels.size() / 3; ++at) lobe.labels[at] = 0;
+  const Extent extent = Extents(lung).begin()->second;
+  const std::size_t below = lung.Index({0, 0, (2 * extent.low.z() + extent.high.z()) / 3});
+  std::fill(lobe.labels.begin(), lobe.labels.begin() + static_cast<std::ptrdiff_t>(below), Label{0});
   const absl::StatusOr<LabelVolume> merged = Merge({{"lung_left.nii", lung}, {"lung_upper_lobe_left.nii", lobe}});
   ASSERT_TRUE(merged.ok()) << merged.status();
   EXPECT_EQ(Voxels(*merged).count("lung_upper_lobe_left"), 1U);
