@@ -207,10 +207,11 @@ CommandFunction SetUpPatient(CLI::App& command) {
           "labels as NIfTI (.nii, .nii.gz), DICOM Segmentation or RT Structure Set: a file, several files of one grid, "
           "their folder, or an archive (.zip, .tar); or a scene (.textproto) whose bodies are surface files")
       ->required();
-  command.add_option(
-      "--labels", options->labels,
-      "map of the numbers: totalsegmentator, vista3d, moose, cads, or a file NAME.textproto; FILE=MAP for "
-      "one of several files; without it, names count, else the installed map that fits best");
+  command
+      .add_option("--labels", options->labels,
+                  "map of the numbers: totalsegmentator, vista3d, moose, cads, or a file NAME.textproto; FILE=MAP for "
+                  "one of several files; without it, names count, else the installed map that fits best")
+      ->allow_extra_args(false);
   command.add_option("--data", options->data, "folder of the scene's surface files; without it, that of --out");
   command.add_option("--out", options->out, "data folder for the surfaces and the scene")->required();
   command.add_option("--name", options->name, "name of the scene: 1 to 64 of a-z, 0-9 and -")->capture_default_str();
