@@ -23,8 +23,8 @@ def phantom() -> bytes:
         return gzip.decompress(path.read_bytes())
 
 
-def write(path: Path, keep: "list[int] | None" = None, to: "int | None" = None) -> Path:
-    """Writes labels of the phantom, without their names: all, or some as one number."""
+def write(path: Path, keep: "list[int] | None" = None, to: "int | None" = None, slab: bool = False) -> Path:
+    """Writes labels of the phantom, without their names: all, or some as one number, or the lower half of the slices."""
     data = bytearray(phantom())
     start = int(struct.unpack_from("<f", data, 108)[0])
     voxels = np.frombuffer(bytes(data[start:]), "<u2").copy()
@@ -32,6 +32,10 @@ def write(path: Path, keep: "list[int] | None" = None, to: "int | None" = None) 
         voxels[~np.isin(voxels, keep)] = 0
     if to is not None:
         voxels[voxels > 0] = to
+    if slab:
+        columns, rows, slices = struct.unpack_from("<3h", data, 42)
+        struct.pack_into("<h", data, 46, slices // 2)
+        voxels = voxels[: columns * rows * (slices // 2)]
     struct.pack_into("<f", data, 108, 352.0)
     path.write_bytes(gzip.compress(bytes(data[:348]) + b"\0\0\0\0" + voxels.tobytes()))
     return path
@@ -66,7 +70,7 @@ class PatientTest(SessionTest):
         self.assertIn("labels.nii.gz", " ".join(found.assumptions))
 
     def test_a_slab_is_refused_with_reasons(self):
-        found = phrenic.patient(write(self.folder / "labels.nii.gz", [5, 10, 12, 31, *range(100, 104)]), vertices=800)
+        found = phrenic.patient(write(self.folder / "labels.nii.gz", slab=True), vertices=800, edge_length_mm=12)
         self.assertEqual(found.verdict, "not usable")
         self.assertGreater(len(found.findings), 0)
         with self.assertRaisesRegex(phrenic.errors.FailedPrecondition, "not usable"):
