@@ -19,7 +19,7 @@ add_custom_target(package_words ALL DEPENDS ${PHRENIC_MADE}/phrenic.1)
 
 install(TARGETS phrenicd phrenic RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY server/scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/phrenic/scenes FILES_MATCHING PATTERN *.textproto)
-install(FILES server/imaging/totalsegmentator.textproto DESTINATION ${CMAKE_INSTALL_DATADIR}/phrenic/labels)
+install(DIRECTORY server/imaging/labels/ DESTINATION ${CMAKE_INSTALL_DATADIR}/phrenic/labels FILES_MATCHING PATTERN *.textproto)
 install(DIRECTORY web/dist/ DESTINATION ${CMAKE_INSTALL_DATADIR}/phrenic/web)
 install(FILES ${PHRENIC_MADE}/phrenic.1 ${PHRENIC_MADE}/phrenicd.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${PHRENIC_MADE}/phrenic.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions

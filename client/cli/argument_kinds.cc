@@ -72,6 +72,7 @@ constexpr KindRow kKindRows[] = {
     {"watch --measure", Kind::kOther, "NAME", ""},
     {"--measure", Kind::kOther, "MEASURE[:STATISTIC]", ""},
     {"--repair", Kind::kChoice, "REPAIR,...", "weld cuts slivers fins orient pinches crumbs holes all"},
+    {"patient --labels", Kind::kFile, "MAP or FILE=MAP", ""},
     {"--labels", Kind::kFile, "NAME or FILE", ""},
     {"phantom --out", Kind::kFile, "FILE or DIR", ""},
     {"patient --out", Kind::kFolder, "DIR", ""},

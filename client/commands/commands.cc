@@ -86,6 +86,8 @@ constexpr Command kCommands[] = {
      SetUpPatient,
      {{"phrenic patient labels.nii.gz --out data --name anna", "write surfaces, a scene and a report"},
       {"phrenic patient seg.dcm --out data --name anna", "from a DICOM Segmentation of a hospital's archive"},
+      {"phrenic patient segmentations --out data --name anna",
+       "from a folder with a file for each structure or model, as TotalSegmentator, MOOSE and CADS write them"},
       {"phrenic patient labels.nii.gz --out data --name anna --serve", "then start a server with the viewer"},
       {"phrenic patient surfaces.textproto --data data --out data --name anna",
        "a scene of surface files, which surfaces.textproto names as thorax-patient does"}}},

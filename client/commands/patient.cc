@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <iostream>
+#include <vector>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -17,8 +18,7 @@
 #include "client/files/whole_file.h"
 #include "client/print/output.h"
 #include "client/terminal/progress.h"
-#include "server/imaging/label_file.h"
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_input.h"
 #include "server/imaging/surfaces/surface_scene.h"
 #include "server/schema/id.h"
 #include "server/schema/places.h"
@@ -29,8 +29,9 @@ namespace phrenic::client {
 namespace {
 
 struct PatientOptions {
-  std::string volume, labels = "totalsegmentator";
-  std::string data;  // folder of the surface files
+  std::vector<std::string> volumes;
+  std::vector<std::string> labels;  // maps, or FILE=MAP
+  std::string data;                 // folder of the surface files
   std::string out, name = "patient";
   double edge_length = 4;  // [mm]
   int vertices = 20000;
@@ -49,23 +50,47 @@ absl::StatusOr<v1::Scene> ReadTemplate() {
   return schema::ParseScene(path, *text);
 }
 
+absl::StatusOr<imaging::MapChoices> ReadChoices(const std::vector<std::string>& labels) {
+  imaging::MapChoices choices;
+  for (const std::string& text : labels) {
+    const std::size_t at = text.rfind('=');
+    if (at == std::string::npos && choices.all.empty()) {
+      choices.all = text;
+    } else if (at == std::string::npos || !choices.by_file.emplace(text.substr(0, at), text.substr(at + 1)).second) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("--labels ", text, ": give one map for all files, and FILE=MAP once for a file of another map"));
+    }
+  }
+  return choices;
+}
+
 absl::StatusOr<imaging::Patient> ReadAndMakePatient(const PatientOptions& options) {
-  const absl::StatusOr<v1::LabelMap> map = imaging::ReadLabelMap(options.labels);
-  if (!map.ok()) return map.status();
+  const absl::StatusOr<imaging::MapChoices> choices = ReadChoices(options.labels);
+  if (!choices.ok()) return choices.status();
   const absl::StatusOr<v1::Scene> scene_template = ReadTemplate();
   if (!scene_template.ok()) return scene_template.status();
   Progress progress("making " + options.name, 1);
   progress.SetDetail("reading");
   progress.Update(0);
-  const absl::StatusOr<imaging::LabelVolume> volume = imaging::ReadLabels(options.volume);
-  if (!volume.ok()) return volume.status();
+  absl::StatusOr<imaging::LabelInput> labels = imaging::ReadLabelInput(options.volumes, *choices);
+  if (!labels.ok()) return labels.status();
+  imaging::LabelVolume& volume = labels->volume;
+  if (labels->meanings.labels().empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(options.volumes.front(),
+                     ": none of its label names is known: rename the labels as in totalsegmentator.textproto, give a "
+                     "map of the names (--labels FILE), or --labels MAP, by whose numbers they are known"));
+  }
+  volume.names.clear();  // `meanings` has the numbers of those that are known
+  if (!labels->remark.empty()) volume.remarks.push_back(labels->remark);
   const imaging::PatientOptions patient = {
       options.name, options.edge_length, {options.vertices, options.tendon_share}, !options.no_fill};
-  return imaging::MakePatient(*volume, *map, *scene_template, patient, [&](double done, std::string_view stage) {
-    progress.SetDetail(std::string(stage));
-    progress.Update(done);
-    return true;
-  });
+  return imaging::MakePatient(volume, labels->meanings, *scene_template, patient,
+                              [&](double done, std::string_view stage) {
+                                progress.SetDetail(std::string(stage));
+                                progress.Update(done);
+                                return true;
+                              });
 }
 
 void PrintDiaphragm(const v1::DerivedDiaphragm& diaphragm) {
@@ -128,9 +153,10 @@ int PrintNext(const PatientOptions& options, const std::string& data) {
 
 // Makes the scene of a person whose surfaces are files that another scene names.
 int MakeFromSurfaces(const PatientOptions& options) {
-  const absl::StatusOr<std::string> text = ReadWhole(options.volume, "the scene that names the surfaces");
+  const std::string& file = options.volumes.front();
+  const absl::StatusOr<std::string> text = ReadWhole(file, "the scene that names the surfaces");
   if (!text.ok()) return Fail(text.status());
-  const absl::StatusOr<v1::Scene> surfaces = schema::ParseScene(options.volume, *text);
+  const absl::StatusOr<v1::Scene> surfaces = schema::ParseScene(file, *text);
   if (!surfaces.ok()) return Fail(surfaces.status());
   const absl::StatusOr<v1::Scene> scene_template = ReadTemplate();
   if (!scene_template.ok()) return Fail(scene_template.status());
@@ -148,7 +174,8 @@ int MakeFromSurfaces(const PatientOptions& options) {
 
 int MakePatient(const Context& context, const PatientOptions& options) {
   if (absl::Status status = schema::CheckId("--name", options.name); !status.ok()) return Fail(status);
-  if (absl::EndsWith(options.volume, ".textproto")) return MakeFromSurfaces(options);
+  const bool surfaces = absl::EndsWith(options.volumes.front(), ".textproto");
+  if (surfaces && options.volumes.size() == 1) return MakeFromSurfaces(options);
   const absl::StatusOr<imaging::Patient> patient = ReadAndMakePatient(options);
   if (!patient.ok()) return Fail(patient.status());
   const v1::Readiness& readiness = patient->report.readiness();
@@ -163,7 +190,7 @@ int MakePatient(const Context& context, const PatientOptions& options) {
   }
   if (refused) {
     return Fail(absl::FailedPreconditionError(
-        absl::StrCat(options.volume, " is not usable, and nothing was written: ", readiness.findings(0).what(),
+        absl::StrCat(options.volumes.front(), " is not usable, and nothing was written: ", readiness.findings(0).what(),
                      ". The report lists every finding; --anyway writes the patient nevertheless")));
   }
   if (options.serve) return ServePatient(options);
@@ -176,11 +203,15 @@ CommandFunction SetUpPatient(CLI::App& command) {
   const auto options = std::make_shared<PatientOptions>();
   command
       .add_option(
-          "VOLUME", options->volume,
-          "labels as NIfTI (.nii, .nii.gz), DICOM Segmentation or RT Structure Set, or a scene (.textproto) whose "
-          "bodies are surface files")
+          "VOLUME", options->volumes,
+          "labels as NIfTI (.nii, .nii.gz), DICOM Segmentation or RT Structure Set: a file, several files of one grid, "
+          "their folder, or an archive (.zip, .tar); or a scene (.textproto) whose bodies are surface files")
       ->required();
-  AddLabels(command, options->labels);
+  command
+      .add_option("--labels", options->labels,
+                  "map of the numbers: totalsegmentator, vista3d, moose, cads, or a file NAME.textproto; FILE=MAP for "
+                  "one of several files; without it, names count, else the installed map that fits best")
+      ->allow_extra_args(false);
   command.add_option("--data", options->data, "folder of the scene's surface files; without it, that of --out");
   command.add_option("--out", options->out, "data folder for the surfaces and the scene")->required();
   command.add_option("--name", options->name, "name of the scene: 1 to 64 of a-z, 0-9 and -")->capture_default_str();

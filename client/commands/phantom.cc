@@ -12,7 +12,7 @@
 #include "client/files/whole_file.h"
 #include "client/phantom/breath.h"
 #include "server/imaging/gzip.h"
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/nifti.h"
 
 namespace phrenic::client {

@@ -70,6 +70,7 @@ constexpr Rule kRules[] = {
     {"PatientService.InspectLabels", kOwner, kNone, kReads},
     {"PatientService.CreatePatient", kOwner, kNone, kChanges},
     {"PatientService.WatchPatient", kNone, kNone, kReads},
+    {"PatientService.ListPatients", kNone, kNone, kReads},
     {"PatientService.DeletePatient", kNone, kNone, kChanges},
     {"StudyService.CreateStudy", kOwner, kNone, kChanges},
     {"StudyService.WatchStudy", kNone, kNone, kReads},

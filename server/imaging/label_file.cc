@@ -25,6 +25,20 @@ absl::Status CheckLabelFormat(std::string_view name, std::string_view bytes) {
   return start.ok() ? ParseNiftiHeader(name, *start).status() : start.status();
 }
 
+bool IsLabelFile(std::string_view bytes) {
+  constexpr std::size_t kHead = 2048;  // its meta information, which names the class, is at its start [bytes]
+  if (!IsDicom(bytes)) return CheckLabelFormat("", bytes).ok();
+  const std::string_view head = bytes.substr(0, kHead);
+  const std::string start = "1.2.840.10008.5.1.4.1.1.";  // of storage classes (PS3.4, B.5)
+  for (const char* ending : {"66.4", "66.7", "481.3"}) {
+    const std::string name = absl::StrCat(start, ending);
+    const std::size_t at = head.find(name);
+    if (at == std::string_view::npos || at + name.size() >= head.size()) continue;
+    if (const char next = head[at + name.size()]; next == '\0' || next == '\x02' || next == ' ') return true;
+  }
+  return false;
+}
+
 absl::StatusOr<LabelVolume> ReadLabels(const std::string& path) {
   const std::optional<std::string> bytes = ReadBytes(path);
   if (bytes.has_value()) return ParseLabels(path, *bytes);

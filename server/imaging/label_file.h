@@ -20,6 +20,9 @@ absl::StatusOr<LabelVolume> ParseLabels(std::string_view name, std::string_view 
 // INVALID_ARGUMENT "name: ..." if the first bytes are those of neither DICOM nor NIfTI. Reads no more. Thread-safe.
 absl::Status CheckLabelFormat(std::string_view name, std::string_view bytes);
 
+// True if the first bytes are those of NIfTI, or of a DICOM Segmentation or RT Structure Set. Thread-safe.
+bool IsLabelFile(std::string_view bytes);
+
 // Reads and parses a file. NOT_FOUND names the path, and says so if it is a folder.
 absl::StatusOr<LabelVolume> ReadLabels(const std::string& path);
 

@@ -130,7 +130,7 @@ absl::StatusOr<Mesh> SurfaceOf(const LabelVolume& volume, const Mask& mask, doub
   const anatomy::Field field = [&](const Eigen::Vector3d& x) { return scale * (level - soft.At(x)); };
   Mesh mesh = anatomy::ImplicitSurface(field, box, edge_length, edge_length);
   if (mesh.triangles.cols() == 0) {
-    return absl::FailedPreconditionError("its voxels enclose no volume at this edge length; lower --edge-length");
+    return absl::FailedPreconditionError("its voxels enclose no volume at this edge length; lower it");
   }
   mesh.vertices *= kMillimetre;
   return mesh;

@@ -17,6 +17,7 @@ void PatientService::AddTo(CallTable& calls) {
   calls.Add(Lane::kWork, *this, &PatientService::InspectLabels);
   calls.Add(Lane::kSession, *this, &PatientService::CreatePatient);
   calls.Add(Lane::kWatch, *this, &PatientService::WatchPatient);
+  calls.Add(Lane::kQuick, *this, &PatientService::ListPatients);
   calls.Add(Lane::kSession, *this, &PatientService::DeletePatient);
 }
 
@@ -31,7 +32,7 @@ grpc::Status PatientService::InspectLabels(grpc::CallbackServerContext* context,
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto running = inspections_.Take(guard_.ShareOf(*caller));
   if (!running.ok()) return ToGrpc(running.status());
-  auto table = patients_.Inspect(request->path(), guard_.RequesterOf(*caller, *context));
+  auto table = patients_.Inspect(*request, guard_.RequesterOf(*caller, *context));
   if (!table.ok()) return ToGrpc(table.status());
   *response = *std::move(table);
   return grpc::Status::OK;
@@ -60,6 +61,19 @@ grpc::Status PatientService::WatchPatient(grpc::CallbackServerContext* context, 
         *response.mutable_patient() = std::move(patient);
         return writer->Write(response);
       }));
+}
+
+grpc::Status PatientService::ListPatients(grpc::CallbackServerContext* context, const v1::ListPatientsRequest* request,
+                                          v1::ListPatientsResponse* response) {
+  const auto caller = guard_.Admit(*context, *request);
+  if (!caller.ok()) return ToGrpc(caller.status());
+  const auto visible = [&](const std::string& owner) { return guard_.MayUse(owner, *caller); };
+  for (v1::Patient& patient : patients_.List(visible)) {
+    patient.clear_report();
+    patient.clear_scene();
+    *response->add_patients() = std::move(patient);
+  }
+  return grpc::Status::OK;
 }
 
 grpc::Status PatientService::DeletePatient(grpc::CallbackServerContext* context,

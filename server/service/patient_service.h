@@ -32,6 +32,9 @@ class PatientService final {
   // On Lane::kWatch, until the patient ends or the client disconnects. CANCELLED if it is deleted meanwhile.
   grpc::Status WatchPatient(grpc::CallbackServerContext* context, const v1::WatchPatientRequest* request,
                             ReplyStream<v1::WatchPatientResponse>* writer);
+  // On Lane::kQuick.
+  grpc::Status ListPatients(grpc::CallbackServerContext* context, const v1::ListPatientsRequest* request,
+                            v1::ListPatientsResponse* response);
   // On Lane::kSession.
   grpc::Status DeletePatient(grpc::CallbackServerContext* context, const v1::DeletePatientRequest* request,
                              v1::DeletePatientResponse* response);

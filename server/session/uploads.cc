@@ -10,6 +10,7 @@
 #include "server/crypto/secret.h"
 #include "server/crypto/sha256.h"
 #include "server/imaging/label_file.h"
+#include "server/imaging/labels/label_archive.h"
 #include "server/mesh/units.h"
 #include "server/meshio/formats.h"
 
@@ -53,7 +54,9 @@ bool IsSurfaceName(const std::string& name) {
 // Parses a surface; of labels, looks whether they can be some.
 absl::StatusOr<Uploads::Finished> Checked(const Uploads::Held& held, const std::string& bytes, double unit_mm) {
   if (held.kind == Uploads::Kind::kLabels) {
-    if (absl::Status labels = imaging::CheckLabelFormat(held.file.name, bytes); !labels.ok()) return labels;
+    absl::Status labels =
+        imaging::IsArchive(bytes) ? absl::OkStatus() : imaging::CheckLabelFormat(held.file.name, bytes);
+    if (!labels.ok()) return labels;
     return Uploads::Finished{held.file, std::nullopt};
   }
   auto surface = meshio::ParseSurface(held.file.name, bytes, kMillimetre * unit_mm);

@@ -8,6 +8,7 @@ namespace phrenic::stream {
 namespace {
 
 constexpr char kPlainColor[] = "#c8c8c8";
+constexpr char kTemplateRegion[] = "from-template";  // of a patient's surface (imaging/patient/template_parts.h)
 
 void SetLook(const Model& model, const BodyModel& body, v1::GetGeometryResponse& geometry) {
   geometry.set_name(body.name);
@@ -28,6 +29,9 @@ void SetSurface(const BodyModel& body, v1::GetGeometryResponse& geometry) {
   AppendFloats(rest, *geometry.mutable_rest_positions());
   AppendIndices(body.mesh.triangles, *geometry.mutable_triangles());
   AppendIndices(body.mesh.edges, *geometry.mutable_edges());
+  const auto filled = body.mesh.regions.find(kTemplateRegion);
+  if (filled == body.mesh.regions.end()) return;
+  for (const int vertex : filled->second) AppendIndex(vertex, *geometry.mutable_template_vertices());
 }
 
 // Converts overlays from simulated vertices to the body's vertex numbers.

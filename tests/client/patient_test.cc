@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 
 #include <cstdlib>
+#include <set>
 #include <string>
 
+#include "absl/strings/str_cat.h"
 #include "tests/client/programs.h"
 
 namespace phrenic::client {
@@ -60,6 +62,29 @@ TEST(PatientCommand, ASlabIsRefusedWithReasonsUnlessItIsWantedAnyway) {
   EXPECT_EQ(written.code, 0) << written.err;
   EXPECT_EQ(written.json()["readiness"]["verdict"], "READINESS_VERDICT_NOT_USABLE");
   EXPECT_TRUE(std::filesystem::exists(Scratch("slab/scenes/patient.textproto")));
+}
+
+// MOOSE writes a file for each of its models.
+TEST(PatientCommand, AFolderOfFilesIsOnePatient) {
+  const std::string folder = Scratch("moose");
+  std::filesystem::create_directories(folder);
+  for (const char* model : {"ribs", "vertebrae", "organs", "cardiac"}) {
+    const std::string file = absl::StrCat(folder, "/CT_", model, "_0000.nii.gz");
+    const std::string map = absl::StrCat("moose-", model);
+    ASSERT_EQ(Phrenic({"phantom", "--voxel", "5", "--labels", map, "--out", file}).code, 0) << model;
+  }
+  const Outcome made = MakeCoarsePatient(folder);
+  ASSERT_EQ(made.code, 0) << made.err;
+  std::set<std::string> bodies;
+  for (const auto& surface : made.json()["surfaces"]) bodies.insert(surface["body"].get<std::string>());
+  for (const char* body : {"rib-5-left", "rib-5-right", "t12", "sternum", "lung-upper-lobe-left"}) {
+    EXPECT_TRUE(bodies.contains(body)) << body;
+  }
+  const Outcome two_maps = Phrenic({"patient", folder, "--out", folder, "--labels", "moose", "--labels", "cads"});
+  EXPECT_NE(two_maps.code, 0);
+  EXPECT_THAT(two_maps.err, HasSubstr("give one map for all files"));
+  const Outcome no_file = Phrenic({"patient", folder, "--out", folder, "--labels", "liver.nii=cads-551"});
+  EXPECT_THAT(no_file.err, HasSubstr("liver.nii=cads-551: no label file of this name was given"));
 }
 
 TEST(PatientCommand, ADicomFileThatIsNoSegmentationIsNamed) {

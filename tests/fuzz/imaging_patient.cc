@@ -1,15 +1,20 @@
 // Any boxes of labels in any orientation give a patient with finite surfaces, or an error. The first byte is 'n' for a
-// NIfTI file; otherwise four bytes choose the frame, and each seven bytes a box: label, corner and size in a grid
-// of 32.
+// NIfTI file, and 'r' for a CreatePatientRequest, whose names of labels give meanings with different numbers and names,
+// or an error that names the field; otherwise four bytes choose the frame, and each seven bytes a box: label, corner
+// and size in a grid of 32.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <set>
+#include <string>
 
-#include "server/imaging/label_map.h"
+#include "absl/strings/match.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/nifti.h"
 #include "server/imaging/patient/patient.h"
 #include "server/schema/schema.h"
+#include "server/session/patient/label_table.h"
 
 namespace phrenic::imaging {
 namespace {
@@ -67,12 +72,33 @@ void Try(const LabelVolume& volume) {
   if (!schema::Validate(patient->scene).ok()) std::abort();
 }
 
+void NameLabels(const std::uint8_t* data, std::size_t size) {
+  v1::CreatePatientRequest request;
+  if (!request.ParseFromArray(data, static_cast<int>(size)) || !schema::Validate(request).ok()) return;
+  const std::uint8_t box[] = {2, 2, 2, 0, 0, 1, 1, 1, 9, 9, 9};
+  LabelVolume volume = Boxes(box, sizeof box);
+  const auto map = session::ApplyLabels(request.labels(), volume);
+  if (!map.ok()) {
+    if (!absl::StartsWith(map.status().message(), "labels[")) std::abort();
+    return;
+  }
+  std::set<std::string> names;
+  std::set<int> numbers;
+  for (const v1::LabelMeaning& label : map->labels()) {
+    if (!names.insert(label.name()).second || !numbers.insert(label.number()).second) std::abort();
+  }
+}
+
 }  // namespace
 }  // namespace phrenic::imaging
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using phrenic::imaging::Try;
   if (size < 5) return 0;
+  if (data[0] == 'r') {
+    phrenic::imaging::NameLabels(data + 1, size - 1);
+    return 0;
+  }
   if (data[0] != 'n') {
     Try(phrenic::imaging::Boxes(data, size));
     return 0;

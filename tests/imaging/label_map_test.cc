@@ -1,5 +1,5 @@
 // Labels are known by their name, by its words, or by the words of their code.
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -65,6 +65,32 @@ TEST(LabelMap, EveryShippedNameIsKnownByItsWords) {
   const v1::LabelMap resolved = Resolve(map, volume, remarks);
   ASSERT_EQ(resolved.labels_size(), map.labels_size());
   for (int l = 0; l < map.labels_size(); ++l) EXPECT_EQ(resolved.labels(l).number(), map.labels(l).number() + 1000);
+}
+
+TEST(LabelMap, WordsOfFileNamesAreAmongOthers) {
+  const v1::LabelMap map = WithCommonNames(*ReadLabelMap(kNamesMap));
+  EXPECT_EQ(LabelOfFile(map, "case-12_CT_Rib-left-07"), "rib_left_7");
+  EXPECT_EQ(LabelOfFile(map, "fab vertebrae t12"), "vertebra_t12");
+  EXPECT_EQ(LabelOfFile(map, "Upper lobe of lung L"), "upper_lobe_lung_left");
+  EXPECT_EQ(LabelOfFile(map, "heart_atrium_left"), "heart_atrium_left") << "longer names count before shorter ones";
+  EXPECT_EQ(LabelOfFile(map, "liver_and_spleen"), "") << "two structures";
+  EXPECT_EQ(LabelOfFile(map, "kidney_left"), "");
+  EXPECT_EQ(LabelOfFile(map, ""), "");
+}
+
+TEST(LabelMap, LabelsOfOneStructureAreUnited) {
+  LabelVolume volume;
+  volume.names = {{3, "heart_atrium_left"}, {4, "Heart ventricle R"}, {9, "Myocardium"}, {5, "liver"}};
+  volume.labels = {0, 3, 4, 9, 5, 7};
+  std::vector<std::string> remarks;
+  const v1::LabelMap map = Resolve(*ReadLabelMap(kNamesMap), volume, remarks);
+  EXPECT_EQ(map.labels_size(), 4);
+  EXPECT_TRUE(HasRepeatedNames(map));
+  const v1::LabelMap united = UniteLabels(map, volume);
+  EXPECT_EQ(united.labels_size(), 2);
+  EXPECT_FALSE(HasRepeatedNames(united));
+  const auto heart = static_cast<Label>(NumberOf(united, "heart"));
+  EXPECT_THAT(volume.labels, ElementsAre(0, heart, heart, heart, 5, 7));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "absl/strings/match.h"
 #include "server/imaging/label_file.h"
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/patient/patient.h"
 #include "server/imaging/phantom.h"
 #include "server/schema/schema.h"

@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "server/anatomy/rib.h"
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/phantom.h"
 #include "server/imaging/rib_axis.h"
 #include "server/mesh/normals.h"

@@ -8,7 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/imaging/label_file.h"
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/nifti.h"
 #include "server/imaging/phantom.h"
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/patient/patient_scene.h"
 #include "server/imaging/phantom.h"
 
@@ -73,6 +73,7 @@ class ReadinessTest : public testing::Test {
     EXPECT_EQ(readiness.verdict(), verdict) << readiness.DebugString();
     ASSERT_EQ(readiness.findings_size(), 1) << readiness.DebugString();
     for (const std::string& word : words) EXPECT_THAT(readiness.findings(0).what(), HasSubstr(word));
+    EXPECT_NE(readiness.findings(0).kind(), v1::FINDING_KIND_UNSPECIFIED);
   }
 
   static v1::LabelMap map_;
@@ -151,6 +152,34 @@ TEST_F(ReadinessTest, ExtrapolationAxesTowerAndAreaHaveThresholds) {
   SetSheet(0.2, 0.19);
   report_.mutable_diaphragm()->set_area_cm2(2000);
   ExpectOne(kWithCare, {"2000 cm2"});
+}
+
+// Programs make their own sentences of the facts, which are those of the sentence.
+TEST_F(ReadinessTest, FactsAreThoseOfTheSentence) {
+  report_.mutable_ribs(9)->set_axis_degrees(141);
+  v1::ReadinessFinding finding = Judge().findings(0);
+  EXPECT_EQ(finding.kind(), v1::FINDING_KIND_ODD_AXES);
+  EXPECT_THAT(finding.parts(), testing::ElementsAre("rib-10-left"));
+  EXPECT_THAT(finding.values(), testing::ElementsAre(141));
+  report_.mutable_ribs(9)->set_axis_degrees(50);
+  Remove([](const auto& label) { return label.organ() == v1::ORGAN_STOMACH || label.organ() == v1::ORGAN_SPLEEN; });
+  finding = Judge().findings(0);
+  EXPECT_EQ(finding.kind(), v1::FINDING_KIND_ORGANS_MISSING);
+  EXPECT_THAT(finding.parts(), testing::ElementsAre("stomach-or-spleen"));
+  volume_ = whole_;
+  SetSheet(0.2, 0.28);
+  finding = Judge().findings(0);
+  EXPECT_EQ(finding.kind(), v1::FINDING_KIND_TOWER);
+  EXPECT_NEAR(finding.values(0), 80, 1e-6);
+  SetSheet(0.2, 0.19);
+  Crop(0, volume_.size.z() / 2);
+  const v1::Readiness slab = Judge();
+  for (const v1::ReadinessFinding& each : slab.findings()) {
+    if (each.kind() != v1::FINDING_KIND_LUNG_CUT) continue;
+    EXPECT_THAT(each.what(), HasSubstr(each.parts(0)));
+    EXPECT_EQ(each.parts(1), "upper");
+    EXPECT_GT(each.values(0), 2);
+  }
 }
 
 }  // namespace

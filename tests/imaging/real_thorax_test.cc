@@ -9,9 +9,11 @@
 #include <sstream>
 
 #include "server/imaging/derived_diaphragm.h"
+#include "server/imaging/patient/patient.h"
 #include "server/imaging/patient/template_parts.h"
 #include "server/imaging/surfaces/derived_thorax.h"
 #include "server/imaging/surfaces/voxelised_parts.h"
+#include "server/imaging/voxelise.h"
 #include "server/mesh/triangle_tree.h"
 #include "server/meshio/meshio.h"
 #include "server/schema/schema.h"
@@ -116,6 +118,60 @@ TEST_F(RealThorax, TheFilledHeartKeepsTheSheetDown) {
               without);
   EXPECT_LT(off, 5);
   EXPECT_LT(off, 0.7 * without);
+}
+
+// Returns the surfaces as labels of a file with voxels of this size, without heart and liver, which they lack.
+LabelVolume Voxelised(const std::vector<PatientBody>& bodies, const LabelVolume& grid, double voxel,
+                      v1::LabelMap& map) {
+  LabelVolume volume;
+  const Eigen::Vector3d finer = grid.Spacing() / voxel;
+  volume.size = grid.size.cast<double>().cwiseProduct(finer).array().ceil().cast<int>();
+  volume.to_patient = grid.to_patient;
+  volume.to_patient.linear() = grid.to_patient.linear() * finer.cwiseInverse().asDiagonal();
+  volume.labels.assign(static_cast<std::size_t>(volume.size.cast<std::int64_t>().prod()), 0);
+  for (const PatientBody& body : bodies) {
+    v1::LabelMeaning& label = *map.add_labels();
+    label.set_number(map.labels_size());
+    label.set_name(body.name);
+    *label.mutable_anatomy() = body.anatomy;
+    const Mask mask = VoxeliseMask(body.mesh, volume, 0);
+    for (int k = 0; k < mask.size.z(); ++k) {
+      for (int j = 0; j < mask.size.y(); ++j) {
+        for (int i = 0; i < mask.size.x(); ++i) {
+          const Eigen::Vector3i at = mask.low + Eigen::Vector3i(i, j, k);
+          if (mask.inside[mask.Index(i, j, k)] == 0 || !volume.Contains(at)) continue;
+          volume.labels[volume.Index(at)] = static_cast<Label>(label.number());
+        }
+      }
+    }
+  }
+  return volume;
+}
+
+// The whole way, as `phrenic patient` goes it.
+TEST_F(RealThorax, ItsLabelsOf2MmHaveItsDiaphragmWithoutATower) {
+  v1::LabelMap map;
+  const LabelVolume volume = Voxelised(surfaces_, seen_.volume, 2, map);
+  std::ifstream file(PHRENIC_SCENES_DIR "/thorax.textproto");
+  std::stringstream text;
+  text << file.rdbuf();
+  PatientOptions options;
+  options.edge_length = 6;
+  options.diaphragm.vertices = 2500;
+  const auto patient = MakePatient(volume, map, *schema::ParseScene("thorax.textproto", text.str()), options,
+                                   [](double, std::string_view) { return true; });
+  ASSERT_TRUE(patient.ok()) << patient.status();
+  Mesh real = diaphragm_.front().mesh;
+  real.vertices.row(0).array() += 1e-3 * patient->report.moved_left_mm();
+  const double off = Assd(patient->bodies.front().mesh, real);
+  const v1::Readiness& readiness = patient->report.readiness();
+  std::printf("real thorax, labels of 2 mm: diaphragm assd %.1f mm, %s\n", off,
+              v1::ReadinessVerdict_Name(readiness.verdict()).c_str());
+  EXPECT_LT(off, 5);
+  for (const v1::ReadinessFinding& finding : readiness.findings()) {
+    std::printf("  %s\n", finding.what().c_str());
+    EXPECT_NE(finding.kind(), v1::FINDING_KIND_TOWER) << finding.what();
+  }
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include "absl/strings/match.h"
 #include "server/imaging/contours/contour_fill.h"
 #include "server/imaging/label_file.h"
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/nifti.h"
 #include "server/imaging/phantom.h"
 #include "tests/imaging/small_structures.h"

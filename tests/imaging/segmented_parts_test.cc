@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <map>
 
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/phantom.h"
 
 namespace phrenic::imaging {

@@ -10,8 +10,8 @@
 #include <map>
 #include <sstream>
 
-#include "server/imaging/label_map.h"
 #include "server/imaging/label_surface.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/patient/patient.h"
 #include "server/imaging/phantom.h"
 #include "server/mesh/triangle_tree.h"

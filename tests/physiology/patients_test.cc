@@ -7,7 +7,7 @@
 #include <map>
 #include <sstream>
 
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/patient/patient.h"
 #include "server/imaging/phantom.h"
 #include "server/mechanics/compile/compile.h"

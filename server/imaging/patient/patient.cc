@@ -5,12 +5,13 @@
 #include <iterator>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "server/imaging/label_map.h"
 #include "server/imaging/label_surface.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/patient/patient_scene.h"
 #include "server/imaging/patient/readiness.h"
 #include "server/imaging/patient/template_parts.h"
@@ -120,12 +121,16 @@ void ReportRibs(const CageFrame& frame, Patient& patient) {
 
 }  // namespace
 
-absl::StatusOr<Patient> MakePatient(const LabelVolume& volume, const v1::LabelMap& map, const v1::Scene& pattern,
+absl::StatusOr<Patient> MakePatient(const LabelVolume& given, const v1::LabelMap& map, const v1::Scene& pattern,
                                     const PatientOptions& options, PatientProgress progress) {
   Patient patient;
   patient.report.set_name(options.name);
-  Messages fallbacks = volume.remarks;
-  const absl::StatusOr<std::vector<Part>> seen = FindParts(volume, Resolve(map, volume, fallbacks), fallbacks);
+  Messages fallbacks = given.remarks;
+  v1::LabelMap meanings = Resolve(map, given, fallbacks);
+  std::optional<LabelVolume> united;
+  if (HasRepeatedNames(meanings)) meanings = UniteLabels(meanings, united.emplace(given));
+  const LabelVolume& volume = united.has_value() ? *united : given;
+  const absl::StatusOr<std::vector<Part>> seen = FindParts(volume, meanings, fallbacks);
   if (!seen.ok()) return seen.status();
   const FilledParts filled = Fill(volume, *seen, options.fill, fallbacks);
   *patient.report.mutable_fill() = filled.report;

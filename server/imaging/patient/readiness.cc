@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
 #include "server/imaging/patient/border.h"
 #include "server/imaging/patient/patient_scene.h"
 #include "server/mesh/self_crossings.h"
@@ -16,11 +20,23 @@ using Findings = std::vector<v1::ReadinessFinding>;
 
 constexpr auto kCare = v1::READINESS_VERDICT_USABLE_WITH_CARE, kRefuse = v1::READINESS_VERDICT_NOT_USABLE;
 
-void Add(bool refuse, std::string what, Findings& findings) {
+// What a finding says to programs.
+struct Facts {
+  v1::FindingKind kind;
+  std::vector<std::string> parts = {};
+  std::vector<double> values = {};
+};
+
+void Add(bool refuse, std::string what, const Facts& facts, Findings& findings) {
   v1::ReadinessFinding& finding = findings.emplace_back();
   finding.set_verdict(refuse ? kRefuse : kCare);
   finding.set_what(std::move(what));
+  finding.set_kind(facts.kind);
+  finding.mutable_parts()->Assign(facts.parts.begin(), facts.parts.end());
+  finding.mutable_values()->Assign(facts.values.begin(), facts.values.end());
 }
+
+const char* SideWordOf(v1::Side side) { return side == v1::SIDE_RIGHT ? "right" : "left"; }
 
 void FindCutLungs(const LabelVolume& volume, const std::vector<Part>& parts, Findings& findings) {
   constexpr double kLeast = 2, kMost = 20;  // [cm^2]
@@ -33,7 +49,7 @@ void FindCutLungs(const LabelVolume& volume, const std::vector<Part>& parts, Fin
             "%s is cut by the %s border of the volume over %.0f cm2: its volume and its base are not known; "
             "use a scan from the apices of the lungs to L3",
             part.name, cut.side, cut.area),
-        findings);
+        {v1::FINDING_KIND_LUNG_CUT, {part.name, cut.side}, {cut.area}}, findings);
   }
 }
 
@@ -47,7 +63,7 @@ void FindCutRibs(const LabelVolume& volume, const std::vector<Part>& parts, Find
   Add(cut.size() >= kMost,
       absl::StrFormat("the border of the volume cuts %s: their motion is that of the part that is left",
                       absl::StrJoin(cut, ", ")),
-      findings);
+      {v1::FINDING_KIND_RIBS_CUT, cut}, findings);
 }
 
 bool IsFilled(const v1::PatientReport& report, const std::string& name) {
@@ -63,28 +79,32 @@ void FindFilled(const v1::TemplateFill& fill, Findings& findings) {
       absl::StrFormat("not seen, but filled from the generated thorax, which fits what is seen to %.1f mm: %s; their "
                       "shape is not the person's, and %.0f %% of the diaphragm rests on them",
                       fill.residual_mm(), absl::StrJoin(fill.parts(), ", "), 100 * fill.diaphragm_share()),
+      {v1::FINDING_KIND_FILLED,
+       {fill.parts().begin(), fill.parts().end()},
+       {fill.residual_mm(), fill.diaphragm_share()}},
       findings);
 }
 
 void FindMissingRibs(const std::vector<Part>& parts, const v1::PatientReport& report, Findings& findings) {
   constexpr int kLast = 10;  // ribs 11 and 12 float
   constexpr std::size_t kMost = 7;
-  std::vector<std::string> missing;
+  std::vector<std::string> missing, bodies;
   for (const v1::Side side : {v1::SIDE_RIGHT, v1::SIDE_LEFT}) {
     for (int number = 1; number <= kLast; ++number) {
       const bool there = std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
         return part.Is(v1::STRUCTURE_RIB) && part.anatomy.side() == side && part.anatomy.number() == number;
       });
-      const char* word = side == v1::SIDE_RIGHT ? "right" : "left";
-      if (there || IsFilled(report, absl::StrFormat("rib-%d-%s", number, word))) continue;
-      missing.push_back(absl::StrFormat("%d %s", number, word));
+      const std::string body = absl::StrFormat("rib-%d-%s", number, SideWordOf(side));
+      if (there || IsFilled(report, body)) continue;
+      missing.push_back(absl::StrFormat("%d %s", number, SideWordOf(side)));
+      bodies.push_back(body);
     }
   }
   if (missing.empty()) return;
   Add(missing.size() >= kMost,
       absl::StrFormat("ribs are missing (%s): the wall, the costal margin and the axes of the cage are guessed there",
                       absl::StrJoin(missing, ", ")),
-      findings);
+      {v1::FINDING_KIND_RIBS_MISSING, bodies}, findings);
 }
 
 void FindMissingOrgans(const std::vector<Part>& parts, Findings& findings) {
@@ -93,15 +113,16 @@ void FindMissingOrgans(const std::vector<Part>& parts, Findings& findings) {
   };
   const auto is_sheet = [](const Part& part) { return part.Is(v1::STRUCTURE_DIAPHRAGM); };
   if (std::any_of(parts.begin(), parts.end(), is_sheet)) return;
-  std::vector<std::string> missing;
+  std::vector<std::string> missing, organs;
   if (!has(v1::ORGAN_HEART)) missing.emplace_back("heart");
   if (!has(v1::ORGAN_LIVER)) missing.emplace_back("liver");
   if (!has(v1::ORGAN_STOMACH) && !has(v1::ORGAN_SPLEEN)) missing.emplace_back("stomach or spleen");
   if (missing.empty()) return;
+  for (const std::string& one : missing) organs.push_back(absl::StrReplaceAll(one, {{" ", "-"}}));
   Add(missing.size() == 3,
       absl::StrFormat("no label for %s: the domes are guessed from the lungs alone there",
                       absl::StrJoin(missing, ", ")),
-      findings);
+      {v1::FINDING_KIND_ORGANS_MISSING, organs}, findings);
 }
 
 void FindExtrapolation(const v1::DerivedDiaphragm& sheet, Findings& findings) {
@@ -112,15 +133,18 @@ void FindExtrapolation(const v1::DerivedDiaphragm& sheet, Findings& findings) {
   Add(sheet.extrapolated() > kMost,
       absl::StrFormat("%.0f %% of the diaphragm is extrapolated, not seen (%s)", 100 * sheet.extrapolated(),
                       absl::StrJoin(sectors, "; ")),
-      findings);
+      {v1::FINDING_KIND_EXTRAPOLATED, sectors, {sheet.extrapolated()}}, findings);
 }
 
 void FindOddAxes(const v1::PatientReport& report, Findings& findings) {
   constexpr double kNarrow = 25, kWide = 90;  // [degree]; adults have 30 to 82
-  std::vector<std::string> odd;
+  std::vector<std::string> odd, ribs;
+  std::vector<double> angles;
   for (const v1::PatientRib& rib : report.ribs()) {
     if (rib.axis_degrees() >= kNarrow && rib.axis_degrees() <= kWide) continue;
     odd.push_back(absl::StrFormat("%s %.0f", rib.body(), rib.axis_degrees()));
+    ribs.push_back(rib.body());
+    angles.push_back(rib.axis_degrees());
   }
   if (odd.empty()) return;
   Add(4 * odd.size() >= static_cast<std::size_t>(report.ribs_size()),
@@ -129,7 +153,7 @@ void FindOddAxes(const v1::PatientReport& report, Findings& findings) {
           "would move inwards or not at all; check that their necks are in the volume "
           "and labelled, and that --edge-length is at most 6 mm",
           absl::StrJoin(odd, ", ")),
-      findings);
+      {v1::FINDING_KIND_ODD_AXES, ribs, angles}, findings);
 }
 
 // Returns the height of the sheet's highest point with |x| in the interval [m].
@@ -154,14 +178,16 @@ void FindOddSheet(const Mesh& sheet, const v1::DerivedDiaphragm& report, Finding
             "the middle of the diaphragm is %.0f mm above its domes: it was drawn up between the lungs; label "
             "the heart",
             1e3 * tower),
-        findings);
+        {v1::FINDING_KIND_TOWER, {}, {1e3 * tower}}, findings);
   }
   if (const int crossings = SelfCrossings(sheet, kCell); crossings > 0) {
     Add(crossings >= kMostCrossings,
-        absl::StrFormat("the diaphragm crosses itself at rest in %d places: it is crumpled", crossings), findings);
+        absl::StrFormat("the diaphragm crosses itself at rest in %d places: it is crumpled", crossings),
+        {v1::FINDING_KIND_CROSSED, {}, {static_cast<double>(crossings)}}, findings);
   }
   if (report.area_cm2() < kSmallest || report.area_cm2() > kLargest) {
-    Add(false, absl::StrFormat("the diaphragm has %.0f cm2; adults have 700 to 1,300", report.area_cm2()), findings);
+    Add(false, absl::StrFormat("the diaphragm has %.0f cm2; adults have 700 to 1,300", report.area_cm2()),
+        {v1::FINDING_KIND_ODD_AREA, {}, {report.area_cm2()}}, findings);
   }
 }
 

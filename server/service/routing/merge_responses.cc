@@ -46,7 +46,8 @@ grpc::ByteBuffer MergeSessionPages(const grpc::ByteBuffer& request, const std::v
 bool IsListMethod(const std::string& method) {
   static const std::set<std::string> methods = {
       "/phrenic.v1.SessionService/ListSessions", "/phrenic.v1.ExportService/ListExports",
-      "/phrenic.v1.StudyService/ListStudies", "/phrenic.v1.UploadService/ListUploads"};
+      "/phrenic.v1.StudyService/ListStudies", "/phrenic.v1.PatientService/ListPatients",
+      "/phrenic.v1.UploadService/ListUploads"};
   return methods.contains(method);
 }
 

@@ -11,9 +11,9 @@
 
 namespace phrenic::service {
 
-// True for methods that list what a server has: ListSessions, ListExports, ListStudies, ListUploads. In a cluster each
-// server is asked and the responses are merged. `method` is a path, "/phrenic.v1.SessionService/ListSessions".
-// Thread-safe.
+// True for methods that list what a server has: ListSessions, ListExports, ListStudies, ListPatients, ListUploads. In a
+// cluster each server is asked and the responses are merged. `method` is a path,
+// "/phrenic.v1.SessionService/ListSessions". Thread-safe.
 bool IsListMethod(const std::string& method);
 
 // Returns the responses to a list method as one. Sessions are sorted by id, the copy with the highest epoch is kept,

@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/mask.h"
 
 namespace phrenic::session {
@@ -25,13 +24,6 @@ constexpr std::size_t kMostLabels = 1000;
 constexpr std::size_t kLongestLabelName = 64;  // [bytes]
 constexpr int kPairsOfRibs = 12, kFirstPairNotExpected = 11;
 constexpr int kVertebrae = 17;  // T1 to L5
-
-void AddChoice(const char* name, v1::Structure structure, v1::Side side, v1::LabelMap& map) {
-  v1::LabelMeaning& label = *map.add_labels();
-  label.set_name(name);
-  label.mutable_anatomy()->set_structure(structure);
-  label.mutable_anatomy()->set_side(side);
-}
 
 // Returns a name of a file as protobuf sends text: valid UTF-8, cut to the longest length.
 std::string Sendable(std::string name) {
@@ -140,6 +132,17 @@ void AddAllMissing(v1::InspectLabelsResponse& table) {
   }
 }
 
+void AddTools(const imaging::LabelInput& input, v1::InspectLabelsResponse& table) {
+  table.set_map(input.tool);
+  for (const imaging::MapFit& fit : input.tools) {
+    v1::LabelTool& tool = *table.add_tools();
+    tool.set_name(fit.name);
+    tool.set_title(fit.map.tool());
+    tool.set_agree(fit.agree);
+    tool.set_differ(fit.differ);
+  }
+}
+
 // True for what the making of a patient knows: a rib has a side and a number, or neither; a vertebra has a number.
 bool IsKnownAnatomy(const v1::Anatomy& anatomy) {
   const bool sided = anatomy.side() != v1::SIDE_UNSPECIFIED;
@@ -180,35 +183,16 @@ absl::Status CheckMeaning(const v1::LabelMeaning& label, int at) {
 
 }  // namespace
 
-v1::LabelMap LabelChoices(const v1::LabelMap& map) {
-  v1::LabelMap choices = map;
-  AddChoice("lung_left", v1::STRUCTURE_LUNG, v1::SIDE_LEFT, choices);
-  AddChoice("lung_right", v1::STRUCTURE_LUNG, v1::SIDE_RIGHT, choices);
-  AddChoice("ribs", v1::STRUCTURE_RIB, v1::SIDE_UNSPECIFIED, choices);
-  AddChoice("diaphragm", v1::STRUCTURE_DIAPHRAGM, v1::SIDE_UNSPECIFIED, choices);
-  return choices;
-}
-
-v1::LabelMap ProposeLabels(const LabelVolume& volume, const v1::LabelMap& map, std::vector<std::string>& remarks) {
-  if (volume.names.empty()) return map;
-  std::vector<std::string> problems;
-  v1::LabelMap known = imaging::Resolve(LabelChoices(map), volume, problems);
-  if (problems.empty()) return known;
-  remarks.emplace_back("none of the file's label names is known; name the labels");
-  return {};
-}
-
-absl::StatusOr<v1::InspectLabelsResponse> DescribeLabels(const LabelVolume& volume, const v1::LabelMap& map) {
+absl::StatusOr<v1::InspectLabelsResponse> DescribeLabels(const imaging::LabelInput& input, const v1::LabelMap& names) {
+  const LabelVolume& volume = input.volume;
   const std::map<imaging::Label, Extent> extents = imaging::Extents(volume);
   if (extents.size() > kMostLabels) {
     return absl::InvalidArgumentError(absl::StrCat("it has ", extents.size(), " values, and ", kMostLabels,
                                                    " labels are the most; is it an image? Give its segmentation"));
   }
   v1::InspectLabelsResponse table;
-  std::vector<std::string> remarks = volume.remarks;
   std::map<int, v1::LabelMeaning> proposed;
-  const v1::LabelMap proposals = ProposeLabels(volume, map, remarks);
-  for (const v1::LabelMeaning& label : proposals.labels()) proposed.emplace(label.number(), label);
+  for (const v1::LabelMeaning& label : input.meanings.labels()) proposed.emplace(label.number(), label);
   const double voxel_ml = std::abs(volume.to_patient.linear().determinant()) / 1000;
   for (const auto& [number, extent] : extents) {
     v1::FoundLabel& label = *table.add_labels();
@@ -220,34 +204,27 @@ absl::StatusOr<v1::InspectLabelsResponse> DescribeLabels(const LabelVolume& volu
   }
   DescribeFrame(volume, extents, table);
   AddAllMissing(table);
-  for (const std::string& remark : remarks) table.add_remarks(Sendable(remark));
-  *table.mutable_choices() = LabelChoices(map).labels();
+  for (const std::string& remark : volume.remarks) table.add_remarks(Sendable(remark));
+  *table.mutable_choices() = names.labels();
+  AddTools(input, table);
   return table;
 }
 
 absl::StatusOr<v1::LabelMap> ApplyLabels(const google::protobuf::RepeatedPtrField<v1::LabelMeaning>& labels,
                                          LabelVolume& volume) {
   v1::LabelMap map;
-  std::map<std::string, imaging::Label> numbers;  // by meaning
   std::set<int> named;
-  std::vector<imaging::Label> becomes(std::size_t{1} << 16);
-  std::iota(becomes.begin(), becomes.end(), imaging::Label{0});
   for (int l = 0; l < labels.size(); ++l) {
     const v1::LabelMeaning& label = labels[l];
     if (absl::Status status = CheckMeaning(label, l); !status.ok()) return status;
     if (!named.insert(label.number()).second) {
       return absl::InvalidArgumentError(absl::StrCat("labels[", l, "]: label ", label.number(), " is named twice"));
     }
-    const auto number = static_cast<imaging::Label>(label.number());
-    const auto [first, added] = numbers.emplace(label.name(), number);
-    becomes[number] = first->second;
-    if (added) *map.add_labels() = label;
+    *map.add_labels() = label;
   }
   volume.names.clear();
   volume.meanings.clear();
-  if (numbers.size() == named.size()) return map;
-  for (imaging::Label& label : volume.labels) label = becomes[label];
-  return map;
+  return imaging::UniteLabels(map, volume);
 }
 
 }  // namespace phrenic::session

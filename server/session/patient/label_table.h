@@ -6,23 +6,14 @@
 
 #include "absl/status/statusor.h"
 #include "phrenic/v1/patients.pb.h"
-#include "server/imaging/label_volume.h"
+#include "server/imaging/labels/label_input.h"
 
 namespace phrenic::session {
 
-// Returns the label map with meanings that segmentations of other programs have: "lung_left", "lung_right", "ribs" (all
-// of them in one label) and "diaphragm", of number 0. Pure function, thread-safe.
-v1::LabelMap LabelChoices(const v1::LabelMap& map);
-
-// Returns the meanings of the volume's labels. If the volume names its labels, names count and numbers do not
-// (imaging::Resolve): no meaning for a name that is unknown. Otherwise numbers of `map` count. `remarks` gets a
-// sentence if the volume has names and none is known. Pure function, thread-safe.
-v1::LabelMap ProposeLabels(const imaging::LabelVolume& volume, const v1::LabelMap& map,
-                           std::vector<std::string>& remarks);
-
 // Returns the table of a volume, with its proposed meanings. All fields are set but the format. INVALID_ARGUMENT for a
-// volume of more than 1,000 labels, which are grey values. Pure function, thread-safe.
-absl::StatusOr<v1::InspectLabelsResponse> DescribeLabels(const imaging::LabelVolume& volume, const v1::LabelMap& map);
+// volume of more than 1,000 labels, which are grey values. `names` has what labels can be named
+// (imaging::WithCommonNames). Pure function, thread-safe.
+absl::StatusOr<v1::InspectLabelsResponse> DescribeLabels(const imaging::LabelInput& input, const v1::LabelMap& names);
 
 // Prepares a volume for imaging::MakePatient with the meanings that a caller gives by number, in `labels`: removes its
 // names, so that numbers count, and gives labels of one meaning one number, which is the only one that is returned.

@@ -7,9 +7,12 @@
 #include <string_view>
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "server/imaging/dicom_file.h"
-#include "server/imaging/label_file.h"
+#include "server/imaging/labels/label_archive.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/mesh/units.h"
 #include "server/meshio/meshio.h"
 #include "server/session/patient/label_table.h"
@@ -17,7 +20,7 @@
 namespace phrenic::session {
 namespace {
 
-constexpr std::int64_t kFirstBytes = 256;
+constexpr std::int64_t kFirstBytes = 512;
 constexpr double kReading = 0.05;           // share of the progress
 constexpr double kSmallestProgress = 0.01;  // smallest change of progress that is reported
 constexpr char kPatientName[] = "patient", kTitle[] = "A patient from a segmentation";  // of every patient's scene
@@ -31,31 +34,38 @@ absl::Status CheckVerdict(const v1::Readiness& readiness, bool anyway) {
 
 }  // namespace
 
-absl::StatusOr<imaging::LabelVolume> ReadLabelUpload(const Uploads::Held& labels) {
+absl::StatusOr<imaging::LabelInput> ReadLabelUpload(const Uploads::Held& labels, const std::string& map) {
+  const bool plain = std::all_of(map.begin(), map.end(),
+                                 [](char c) { return absl::ascii_isalnum(static_cast<unsigned char>(c)) || c == '-'; });
+  const absl::StatusOr<std::vector<imaging::MapFit>> maps =
+      plain ? imaging::ReadMaps(map) : absl::NotFoundError("a name has letters, digits and \"-\"");
+  if (!maps.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat("map: there is no label map of this name; there are ",
+                                                   absl::StrJoin(imaging::InstalledLabelMaps(), ", ")));
+  }
   const absl::StatusOr<std::string> bytes = labels.Bytes();
   if (!bytes.ok()) return bytes.status();
-  return imaging::ParseLabels(Uploads::kLabelsName, *bytes, kMostVoxels);
+  return imaging::ParseLabelInput(Uploads::kLabelsName, *bytes, map, kMostVoxels);
 }
 
 std::string LabelFormat(const Uploads::Held& labels) {
   std::string start(static_cast<std::size_t>(std::min(kFirstBytes, labels.spool->size())), '\0');
   const absl::Status read = labels.spool->Read(0, start.data(), start.size());
+  if (read.ok() && imaging::IsArchive(start)) return "archive";
   return read.ok() && imaging::IsDicom(start) ? "DICOM" : "NIfTI";
 }
 
 absl::StatusOr<imaging::Patient> PatientJob::Make(imaging::PatientProgress progress) const {
-  absl::StatusOr<imaging::LabelVolume> volume = ReadLabelUpload(start_.labels);
-  if (!volume.ok()) return volume.status();
-  v1::LabelMap proposed;
-  if (start_.request.labels().empty()) proposed = ProposeLabels(*volume, start_.map, volume->remarks);
+  absl::StatusOr<imaging::LabelInput> input = ReadLabelUpload(start_.labels, start_.request.map());
+  if (!input.ok()) return input.status();
   const bool named = !start_.request.labels().empty();
-  const auto map = ApplyLabels(named ? start_.request.labels() : proposed.labels(), *volume);
+  const auto map = ApplyLabels(named ? start_.request.labels() : input->meanings.labels(), input->volume);
   if (!map.ok()) return map.status();
   imaging::PatientOptions options;
   options.name = kPatientName;
   if (start_.request.has_vertices()) options.diaphragm.vertices = start_.request.vertices();
   if (start_.request.has_edge_length_mm()) options.edge_length = start_.request.edge_length_mm();
-  return imaging::MakePatient(*volume, *map, start_.pattern, options, [&](double done, std::string_view doing) {
+  return imaging::MakePatient(input->volume, *map, start_.pattern, options, [&](double done, std::string_view doing) {
     return progress(kReading + (1 - kReading) * done, doing);
   });
 }

@@ -8,7 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "phrenic/v1/patients.pb.h"
-#include "server/imaging/label_volume.h"
+#include "server/imaging/labels/label_input.h"
 #include "server/imaging/patient/patient.h"
 #include "server/jobs/queue.h"
 #include "server/session/uploads.h"
@@ -18,16 +18,16 @@ namespace phrenic::session {
 // Voxels of a volume that a client sends: 512 x 512 x 1,024. Reading it takes up to four times as many bytes.
 inline constexpr std::size_t kMostVoxels = std::size_t{1} << 28;
 
-// Reads an uploaded label volume. The errors of imaging::ParseLabels; RESOURCE_EXHAUSTED above kMostVoxels.
-absl::StatusOr<imaging::LabelVolume> ReadLabelUpload(const Uploads::Held& labels);
-// Returns "DICOM" or "NIfTI", by the first bytes.
+// Reads an uploaded label volume, with its labels' meanings by the map of that name (imaging::ReadMaps). The errors of
+// imaging::ParseLabelInput; RESOURCE_EXHAUSTED above kMostVoxels; INVALID_ARGUMENT for an unknown map.
+absl::StatusOr<imaging::LabelInput> ReadLabelUpload(const Uploads::Held& labels, const std::string& map);
+// Returns "DICOM", "NIfTI" or "archive", by the first bytes.
 std::string LabelFormat(const Uploads::Held& labels);
 
 // What a patient is made from.
 struct PatientStart {
   Uploads::Held labels;
   v1::CreatePatientRequest request;
-  v1::LabelMap map;   // for a request without labels
   v1::Scene pattern;  // the scene "thorax"
   Requester by;       // without `cancelled`
 };

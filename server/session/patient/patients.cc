@@ -4,13 +4,13 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/session/patient/label_table.h"
 
 namespace phrenic::session {
 namespace {
 
-constexpr char kLabelMap[] = "totalsegmentator", kPattern[] = "thorax";
+constexpr char kPattern[] = "thorax";
 constexpr int kMostNamed = 1000;  // labels of a request
 
 }  // namespace
@@ -30,14 +30,15 @@ Patients::Patients(Models& models, Uploads& uploads, const Limits& limits, const
               .lifetime = absl::Minutes(limits.export_minutes)},
              clock, jobs::Records("patient", nullptr)) {}
 
-absl::StatusOr<v1::InspectLabelsResponse> Patients::Inspect(const std::string& path, const Requester& by) {
-  const auto labels = uploads_.Hold(by, path);
+absl::StatusOr<v1::InspectLabelsResponse> Patients::Inspect(const v1::InspectLabelsRequest& request,
+                                                            const Requester& by) {
+  const auto labels = uploads_.Hold(by, request.path());
   if (!labels.ok()) return labels.status();
-  const auto map = imaging::ReadLabelMap(kLabelMap);
-  if (!map.ok()) return map.status();
-  const auto volume = ReadLabelUpload(*labels);
-  if (!volume.ok()) return volume.status();
-  auto table = DescribeLabels(*volume, *map);
+  const auto names = imaging::ReadLabelMap(imaging::kNamesMap);
+  if (!names.ok()) return names.status();
+  const auto input = ReadLabelUpload(*labels, request.map());
+  if (!input.ok()) return input.status();
+  auto table = DescribeLabels(*input, imaging::WithCommonNames(*names));
   if (!table.ok()) return table;
   table->set_format(LabelFormat(*labels));
   return table;
@@ -50,15 +51,13 @@ absl::StatusOr<v1::Patient> Patients::Add(const v1::CreatePatientRequest& reques
   }
   auto labels = uploads_.Hold(by, request.path());
   if (!labels.ok()) return labels.status();
-  auto map = imaging::ReadLabelMap(kLabelMap);
-  if (!map.ok()) return map.status();
   auto pattern = models_.catalogue().Find(kPattern);
   if (!pattern.ok()) return pattern.status();
   Requester owner = {.owner = by.owner};
   v1::Patient message;
   message.set_doing("waiting for earlier patients");
   auto job = std::make_shared<PatientJob>(
-      PatientStart{*std::move(labels), request, *std::move(map), *std::move(pattern), std::move(owner)}, uploads_);
+      PatientStart{*std::move(labels), request, *std::move(pattern), std::move(owner)}, uploads_);
   return queue_.Add(by.owner, "", "patient", std::move(message), std::move(job));
 }
 

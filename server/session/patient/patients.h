@@ -2,8 +2,10 @@
 #ifndef PHRENIC_SERVER_SESSION_PATIENT_PATIENTS_H_
 #define PHRENIC_SERVER_SESSION_PATIENT_PATIENTS_H_
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/functional/function_ref.h"
 #include "absl/status/statusor.h"
@@ -26,7 +28,7 @@ class Patients {
 
   // Returns the table of an uploaded volume (DescribeLabels). NOT_FOUND for an upload that the requester does not have;
   // the errors of ReadLabelUpload and imaging::ReadLabelMap. Runs on the calling thread, for seconds.
-  absl::StatusOr<v1::InspectLabelsResponse> Inspect(const std::string& path, const Requester& by);
+  absl::StatusOr<v1::InspectLabelsResponse> Inspect(const v1::InspectLabelsRequest& request, const Requester& by);
   // Queues a patient. NOT_FOUND for an upload that the requester does not have, or a server without the scene "thorax";
   // INVALID_ARGUMENT for more than 1,000 labels; the errors of jobs::Queue::Add.
   absl::StatusOr<v1::Patient> Add(const v1::CreatePatientRequest& request, const Requester& by);
@@ -34,6 +36,9 @@ class Patients {
   absl::Status Watch(const std::string& id, absl::FunctionRef<bool()> gone,
                      absl::FunctionRef<bool(v1::Patient message)> write) const {
     return queue_.Watch(id, gone, write);
+  }
+  std::vector<v1::Patient> List(const std::function<bool(const std::string& owner)>& visible) const {
+    return queue_.List(visible);
   }
   std::optional<std::string> OwnerOf(const std::string& id) const { return queue_.OwnerOf(id); }
   absl::Status Delete(const std::string& id) { return queue_.Delete(id); }

@@ -23,18 +23,18 @@ beforeAll(async () => {
 
 afterAll(() => endAll(browser, server));
 
-/** Drops a file on the page, as from the desktop. */
-async function drop({ page }: ViewerPage, path: string, name: string): Promise<void> {
-  const content = (await readFile(path)).toString("base64");
-  await page.evaluate(
-    async ([text, called]) => {
+/** Drops files on the page, as from the desktop: their paths by the names that they have there. */
+async function drop({ page }: ViewerPage, files: Record<string, string>): Promise<void> {
+  const contents: [string, string][] = [];
+  for (const [name, path] of Object.entries(files)) contents.push([name, (await readFile(path)).toString("base64")]);
+  await page.evaluate((dropped) => {
+    const dataTransfer = new DataTransfer();
+    for (const [name, text] of dropped) {
       const bytes = Uint8Array.from(atob(text), (each) => each.charCodeAt(0));
-      const dataTransfer = new DataTransfer();
-      dataTransfer.items.add(new File([bytes], called));
-      document.body.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
-    },
-    [content, name],
-  );
+      dataTransfer.items.add(new File([bytes], name));
+    }
+    document.body.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
+  }, contents);
 }
 
 /** Makes a DICOM Segmentation of a phantom with pydicom. */
@@ -51,7 +51,7 @@ test("ADroppedDicomSegmentationBecomesABreathingPatient", async () => {
   await viewer.waitForPicture();
   const begun = Date.now();
   const seconds = () => ((Date.now() - begun) / 1000).toFixed(0);
-  await drop(viewer, dicom, "DOE^JANE 1948.dcm");
+  await drop(viewer, { "DOE^JANE 1948.dcm": dicom });
   const { page } = viewer;
   await page.waitForSelector("#patient-make", patience);
   console.log(`the labels are shown after ${seconds()} s`);
@@ -80,18 +80,51 @@ test("ADroppedDicomSegmentationBecomesABreathingPatient", async () => {
   expect(await readFile(join(outFolder, "phrenicd.log"), "utf8")).not.toMatch(/DOE\^JANE|Doe\^Jane/);
 }, 400_000);
 
+// Without ribs, which are filled from the generated thorax, and in a file for each model, as MOOSE writes them.
+test("FilesOfOnePatientAreOneAndWhatIsFilledHasAColour", async () => {
+  const files: Record<string, string> = {};
+  for (const model of ["vertebrae", "organs", "cardiac"]) {
+    const path = join(outFolder, `${model}.nii.gz`);
+    await server.phrenic("phantom", "--voxel", "4", "--labels", `moose-${model}`, "--out", path);
+    files[`DOE^JANE_CT_${model}_0000.nii.gz`] = path;
+  }
+  const viewer = await ViewerPage.open(browser, `${server.url}?session=cube&lang=es`, { width: 1280, height: 900 });
+  await viewer.waitForPicture();
+  await drop(viewer, files);
+  const { page } = viewer;
+  await page.click("#patient-all", patience);
+  await page.waitForSelector("#patient-make", patience);
+  expect(await page.locator(".label-rows tbody tr").count()).toBeGreaterThan(15);
+  expect(await viewer.violations()).toEqual([]);
+  await viewer.saveScreenshot("patient_files");
+  await page.click("#patient-make");
+  await page.waitForSelector("#patient-verdict", patience);
+  await viewer.saveScreenshot("patient_files_verdict");
+  expect(await page.locator("#patient-verdict").getAttribute("data-verdict")).toBe("USABLE_WITH_CARE");
+  await page.click("#patient-open");
+  await page.waitForURL(({ search }) => !search.startsWith("?session=cube"), patience);
+  await viewer.waitForPicture();
+  await page.waitForSelector("#template-legend:visible", patience);
+  await viewer.saveScreenshot("patient_filled");
+  expect(await page.content()).not.toMatch(/DOE|Doe/);
+  await viewer.close();
+  expect(await readFile(join(outFolder, "phrenicd.log"), "utf8")).not.toMatch(/DOE\^JANE/);
+}, 400_000);
+
 test.runIf(existsSync(slab))(
   "ASlabIsRefusedWithItsReasons",
   async () => {
     const viewer = await ViewerPage.open(browser, `${server.url}?session=cube&lang=de`, { width: 1280, height: 900 });
     await viewer.waitForPicture();
-    await drop(viewer, slab, "slab.nii.gz");
+    await drop(viewer, { "slab.nii.gz": slab });
     const { page } = viewer;
     await page.click("#patient-make", patience);
     await page.waitForSelector("#patient-verdict", patience);
     expect(await page.locator("#patient-verdict").getAttribute("data-verdict")).toBe("NOT_USABLE");
     expect(await page.locator("#patient-verdict").textContent()).toMatch(/^Nicht brauchbar/);
     expect(await page.locator("#patient-reasons li").count()).toBeGreaterThan(2);
+    expect(await page.locator("#patient-reasons").textContent()).toMatch(/abgeschnitten|schneidet ab/);
+    expect(await page.locator("#patient-reasons").textContent()).not.toMatch(/\bribs?\b|border|--/);
     expect(await page.locator("#patient-open").count()).toBe(0);
     await viewer.saveScreenshot("patient_refused");
     await page.click("#patient-cancel");

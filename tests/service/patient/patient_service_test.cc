@@ -5,7 +5,7 @@
 #include "phrenic/v1/patients.grpc.pb.h"
 #include "phrenic/v1/upload.grpc.pb.h"
 #include "server/imaging/gzip.h"
-#include "server/imaging/label_map.h"
+#include "server/imaging/labels/label_map.h"
 #include "server/imaging/nifti.h"
 #include "server/imaging/phantom.h"
 #include "tests/service/guarded_server.h"
@@ -178,6 +178,40 @@ TEST_F(PatientServiceTest, ASlabIsRefusedWithReasonsUnlessItIsWantedAnyway) {
   ASSERT_GT(refused.report().readiness().findings_size(), 0);
   EXPECT_THAT(refused.problem(), HasSubstr(refused.report().readiness().findings(0).what()));
   EXPECT_TRUE(Make(path, "anyway: true").has_scene());
+}
+
+// Numbers without names are read by the program's map that fits, or by the one that is asked for.
+TEST_F(PatientServiceTest, NumbersAreReadByTheProgramThatFits) {
+  const auto map = imaging::ReadLabelMap("vista3d");
+  imaging::LabelVolume volume = *imaging::MakePhantom(*imaging::FindPhantomBody("adult"), {.voxel = 5}, *map);
+  volume.names.clear();
+  const std::string path = Uploaded(volume);
+  const v1::InspectLabelsResponse table = Inspect(path);
+  EXPECT_EQ(table.map(), "vista3d");
+  ASSERT_GT(table.tools_size(), 2);
+  EXPECT_EQ(table.tools(0).title(), "VISTA3D");
+  EXPECT_GT(table.tools(0).agree() - table.tools(0).differ(), table.tools(1).agree() - table.tools(1).differ());
+  for (const v1::FoundLabel& label : table.labels()) EXPECT_TRUE(label.has_proposed()) << label.number();
+  v1::InspectLabelsResponse other;
+  const std::string by = "path: '" + path + "' map: ";
+  ASSERT_TRUE(CallAs({"owner"}, *patients_, &Patients::InspectLabels, by + "'totalsegmentator'", &other).ok());
+  EXPECT_EQ(other.map(), "totalsegmentator");
+  const auto unknown = CallAs({"owner"}, *patients_, &Patients::InspectLabels, by + "'../vista3d'", &other);
+  EXPECT_EQ(unknown.error_code(), grpc::INVALID_ARGUMENT);
+  EXPECT_THAT(unknown.error_message(), HasSubstr("totalsegmentator, vista3d"));
+  EXPECT_EQ(Make(path, "anyway: true").state(), v1::PATIENT_STATE_DONE);
+}
+
+TEST_F(PatientServiceTest, PatientsAreListedForTheirOwnerWithoutTheirScenes) {
+  const v1::Patient made = Make(Uploaded(Phantom()), "anyway: true");
+  v1::ListPatientsResponse own, others;
+  ASSERT_TRUE(CallAs({"owner"}, *patients_, &Patients::ListPatients, "", &own).ok());
+  ASSERT_TRUE(CallAs({"other"}, *patients_, &Patients::ListPatients, "", &others).ok());
+  ASSERT_EQ(own.patients_size(), 1);
+  EXPECT_EQ(own.patients(0).id(), made.id());
+  EXPECT_EQ(own.patients(0).state(), v1::PATIENT_STATE_DONE);
+  EXPECT_FALSE(own.patients(0).has_scene() || own.patients(0).has_report());
+  EXPECT_EQ(others.patients_size(), 0);
 }
 
 TEST_F(PatientServiceTest, OthersSeeNeitherVolumeNorPatient) {

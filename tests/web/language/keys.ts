@@ -43,6 +43,7 @@ const tables: Record<string, string[]> = {
   "panels/view/view_bar.ts": ["buttons"],
   "panels/comparison/view_headers.ts": ["words"],
   "panels/readings/probes.ts": ["heads"],
+  "patient/finding_words.ts": ["sides"],
   "patient/patient_dialog.ts": ["verdicts"],
   "viewer/viewpoints.ts": ["directions", "cuts"],
 };
@@ -61,6 +62,7 @@ const others = [
     " ",
   ),
   ..."time tick breath pace links dome distance angle area volume".split(" "),
+  ..."upper lower front back wall".split(" "),
   ..."Space Healthy Ill Machine Breaths Supine Upright Prone".split(" "),
   ..."Flows Pressures Heights Energies".split(" "),
   ...["right dome", "left dome", "Right side", "Left side"],

@@ -26,9 +26,9 @@ function fakeServer(verdict: ReadinessVerdict) {
       deleteUpload: ({ path }) => (asked.push(`delete ${path}`), {}),
     });
     service(PatientService, {
-      inspectLabels: ({ path }) => (asked.push(`inspect ${path}`), { labels: [{ number: 7 }] }),
-      createPatient: ({ labels, anyway }) => (
-        asked.push(`create ${labels.map(({ number, name }) => `${number} ${name}`)} ${anyway}`),
+      inspectLabels: ({ path, map }) => (asked.push(`inspect ${path} ${map}`.trim()), { labels: [{ number: 7 }] }),
+      createPatient: ({ labels, anyway, map }) => (
+        asked.push(`create ${labels.map(({ number, name }) => `${number} ${name}`)} ${anyway} ${map}`.trim()),
         { patient: { id: "p" } }
       ),
       watchPatient: async function* () {
@@ -94,6 +94,21 @@ test("OfManyFilesOnlyAChosenSegmentationIsSent", async () => {
   expect(asked).toEqual([]);
   await importing.take([...slices, segmentation]);
   expect(importing.state.value.kind).toBe("naming");
+});
+
+test("SeveralFilesOfOnePatientAreSentAsOneAndReadByAChosenProgram", async () => {
+  const { api, asked } = fakeServer(ReadinessVerdict.READY);
+  const importing = new PatientImport(api, () => undefined);
+  const files = [
+    dicom("1.2.840.10008.5.1.4.1.1.66.4", "DOE rib 7"),
+    dicom("1.2.840.10008.5.1.4.1.1.66.4", "DOE heart"),
+  ];
+  await importing.take(files);
+  expect(importing.state.value.kind).toBe("choosing");
+  await importing.read(files);
+  await importing.readBy("moose");
+  await importing.make([liver], false);
+  expect(asked).toEqual(["labels LABELS", "inspect upload:1", "inspect upload:1 moose", "create 7 liver false moose"]);
 });
 
 test("FilesAreKnownByTheirContent", async () => {

@@ -7,6 +7,8 @@ import { type Term, termsOf } from "./terms";
 export interface Structure extends Term {
   /** Indices of the structure's vertices; undefined for all of the body. */
   vertices: number[] | undefined;
+  /** Share of its vertices that were filled from the generated thorax; undefined for none. */
+  filled?: number | undefined;
 }
 
 /** The named structures of a scene. */
@@ -15,7 +17,9 @@ export class Structures {
   private readonly regions = new Map<string, string[]>();
 
   constructor(bodies: Body[]) {
-    this.all = bodies.flatMap((body) => this.structuresOf(body, bodies));
+    this.all = bodies.flatMap((body) =>
+      this.structuresOf(body, bodies).map((each) => ({ ...each, ...filledShare(body, each.vertices) })),
+    );
   }
 
   /** Returns the structure at a vertex: a region if the body has regions; undefined if it has no name. */
@@ -52,6 +56,13 @@ export class Structures {
       return vertices.length === 0 ? [] : [{ ...term, vertices }];
     });
   }
+}
+
+function filledShare({ template, rest }: Body, vertices: number[] | undefined): { filled?: number } {
+  if (!template?.length) return {};
+  if (vertices === undefined) return { filled: template.length / (rest.length / 3) };
+  const filled = new Set(template);
+  return { filled: vertices.filter((vertex) => filled.has(vertex)).length / vertices.length };
 }
 
 /** Returns how well a structure fits: whole words count more than parts; undefined if a word is missing. */

@@ -18,6 +18,7 @@ import { coloringCard } from "../panels/view/coloring_card";
 import { OrientationCube } from "../panels/view/orientation_cube";
 import { PickCard } from "../panels/view/pick_card";
 import { rememberedQuality } from "../panels/view/quality_row";
+import { isFilled, templateLegend } from "../panels/view/template_legend";
 import { TissueCard } from "../panels/view/tissue_card";
 import type { Comparisons } from "../session/comparisons";
 import type { ForceQueries, ForceRequest } from "../session/force_queries";
@@ -28,6 +29,7 @@ import type { Cut } from "../viewer/clipping";
 import { viewNames } from "../viewer/named_views";
 import { paintTexts } from "../viewer/overlay_painter";
 import type { OverlayKind } from "../viewer/overlays";
+import { templateColor } from "../viewer/vertex_colors";
 import type { Viewer } from "../viewer/viewer";
 import { type Viewpoint, viewpoints } from "../viewer/viewpoints";
 import { Measuring } from "./measuring";
@@ -58,6 +60,7 @@ export class SceneTools {
   /** The cut of the named view that is shown. */
   private visitedCut: Cut | undefined;
   private readonly pickCard: PickCard;
+  private readonly legend = templateLegend(templateColor);
   private readonly ghosts: GhostSelector;
   private bodies: Body[] = [];
   private tissue: Body[] = [];
@@ -94,7 +97,13 @@ export class SceneTools {
     for (const changes of [this.measuring.measurements.all, this.measuring.measurements.picked])
       changes.subscribe(() => this.updateMarkers());
     const tissueCard = new TissueCard(lungs.points);
-    this.cards = [coloringCard(this.coloring), tissueCard.element, this.structures.card, this.pickCard.element];
+    this.cards = [
+      this.legend,
+      coloringCard(this.coloring),
+      tissueCard.element,
+      this.structures.card,
+      this.pickCard.element,
+    ];
     const { labels, ghost, quality } = this;
     this.panel = appearancePanel({
       layerStyles,
@@ -149,6 +158,7 @@ export class SceneTools {
     this.tissue = bodies.filter(({ name }) => tissue.has(name));
     this.viewpoints.set(viewpoints(bodies, this.viewer.bounds));
     this.structures.start(bodies);
+    this.legend.hidden = !isFilled(bodies);
     this.coloring.start(this.tissue);
     void this.forces.start(this.tissue[0]?.name);
     this.lungs.start(bodies);

@@ -27,6 +27,8 @@ export interface Body {
   rigidLinks: Uint32Array<ArrayBuffer>;
   attached: Uint32Array<ArrayBuffer>;
   fixed: Uint32Array<ArrayBuffer>;
+  /** Vertices of a patient's body that were filled from the generated thorax; undefined for none. */
+  template?: Uint32Array<ArrayBuffer> | undefined;
   actionLines: ActionLine[];
 }
 
@@ -61,6 +63,7 @@ export function decodeBody(message: GetGeometryResponse): Body {
     rigidLinks: indices(message.rigidLinks, 2, count, of("rigid_links")),
     attached: indices(message.attachedVertices, 1, count, of("attached_vertices")),
     fixed: indices(message.fixedVertices, 1, count, of("fixed_vertices")),
+    template: indices(message.templateVertices, 1, count, of("template_vertices")),
     actionLines: message.actionLines.map((line) => ({
       name: line.name,
       origin: triple(line.origin, of("action_lines.origin")),

@@ -10,8 +10,12 @@ export class LabelTable {
   readonly element: HTMLElement;
   private readonly menus: { number: number; menu: HTMLSelectElement }[] = [];
 
-  constructor(private readonly table: InspectLabelsResponse) {
-    this.element = make("div", {}, ...this.facts(), this.rows());
+  constructor(
+    private readonly table: InspectLabelsResponse,
+    /** Reads the labels by another program's map. */
+    private readonly readBy: (map: string) => void,
+  ) {
+    this.element = make("div", {}, ...this.facts(), ...this.tools(), this.rows());
   }
 
   /** Returns the meanings that the menus show, by the volume's numbers; labels that are not used are left out. */
@@ -46,6 +50,26 @@ export class LabelTable {
     return [...facts, ...remarks.map((remark) => make("p", { className: "faint" }, remark))];
   }
 
+  /** Returns a menu of the programs that number labels, if numbers count. */
+  private tools(): HTMLElement[] {
+    const { tools, map } = this.table;
+    if (tools.length === 0) return [];
+    const menu = make("select", { id: "patient-tool" });
+    for (const { name, title, agree, differ } of tools) {
+      const words = t("{0}: {1} of {2} labels fit", toolName(title, name), agree, agree + differ);
+      menu.append(make("option", { value: name, selected: name === map }, words));
+    }
+    menu.onchange = () => this.readBy(menu.value);
+    const used = tools.find(({ name }) => name === map);
+    const better = used !== undefined && tools[0].agree - tools[0].differ > used.agree - used.differ;
+    const guessed = t("The labels have numbers and no names. The program is a guess by their sizes and places.");
+    const other = t("The numbers fit another program better: {0}", toolName(tools[0].title, tools[0].name));
+    return [
+      make("p", { className: better ? "fault" : "faint", id: "patient-guess" }, better ? other : guessed),
+      make("p", {}, make("label", { htmlFor: menu.id }, t("Program that made the labels")), " ", menu),
+    ];
+  }
+
   private rows(): HTMLElement {
     const heads = [t("Number"), t("Name in the file"), t("Structure"), t("Volume")];
     const head = make("tr", {}, ...heads.map((words) => make("th", { scope: "col" }, words)));
@@ -75,4 +99,10 @@ export class LabelTable {
     row.dataset.label = String(number);
     return row;
   }
+}
+
+/** Returns a program's name, with the model that has a file of its own: "MOOSE ribs". */
+function toolName(title: string, map: string): string {
+  const model = /-(.*)/.exec(map)?.[1];
+  return model === undefined ? title : `${title} ${model}`;
 }

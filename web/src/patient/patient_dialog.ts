@@ -3,6 +3,7 @@ import { make } from "../dom/elements";
 import { alertMessage } from "../dom/rows";
 import { type PatientReport, ReadinessVerdict } from "../gen/phrenic/v1/patient_pb";
 import { fixed, t } from "../language/translate";
+import { findingWords, partName } from "./finding_words";
 import { LabelTable } from "./label_table";
 import { type Dropped, droppedFiles, type FoundFiles } from "./patient_files";
 import { type ImportState, PatientImport } from "./patient_import";
@@ -51,7 +52,8 @@ export class PatientDialog {
     if (state.kind === "empty") this.labels = undefined;
     if (state.kind === "empty") this.content.append(...this.pickers());
     else if (state.kind === "choosing") this.content.append(...this.choices(state.found), ...this.pickers());
-    else if (state.kind === "naming") this.showTable(new LabelTable(state.table));
+    else if (state.kind === "naming")
+      this.showTable(new LabelTable(state.table, (map) => void this.importing.readBy(map)));
     else if (state.kind === "made" || state.kind === "refused") this.content.append(...this.verdict(state));
     else if (state.kind === "failed") this.showFailure(state.message);
     else this.status.append(...this.progress(state));
@@ -59,14 +61,17 @@ export class PatientDialog {
 
   private pickers(): HTMLElement[] {
     const picker = (id: string, words: string, folder: boolean) => {
-      const input = make("input", { type: "file", hidden: true, id: `${id}-input`, webkitdirectory: folder });
+      const input = make("input", { type: "file", hidden: true, id: `${id}-input`, multiple: true });
+      input.webkitdirectory = folder;
       input.ariaLabel = words;
       input.onchange = () => void this.importing.take([...(input.files ?? [])]);
       return [input, make("button", { type: "button", id, onclick: () => input.click() }, words)];
     };
-    const hint = t("Lungs, ribs, vertebrae and organs of the thorax as NIfTI, DICOM Segmentation or RT Structure Set.");
+    const hint = t(
+      "Lungs, ribs, vertebrae and organs of the thorax as NIfTI, DICOM Segmentation or RT Structure Set: one file, or several of one patient.",
+    );
     const privacy = t(
-      "Only the segmentation is sent to this server: neither images, nor the name of a file. The server reads no names of patients, and deletes the file when this dialog closes.",
+      "Only the segmentation is sent to this server: neither images, nor names of files, of which only words such as “rib left 7” are. The server reads no names of patients, and deletes the file when this dialog closes.",
     );
     return [
       make("p", {}, hint),
@@ -74,7 +79,7 @@ export class PatientDialog {
       make(
         "div",
         { className: "acts" },
-        ...picker("patient-file", t("Choose a file…"), false),
+        ...picker("patient-file", t("Choose files…"), false),
         ...picker("patient-folder", t("Choose a folder…"), true),
       ),
     ];
@@ -82,20 +87,28 @@ export class PatientDialog {
 
   private choices({ volumes, images, others }: FoundFiles): HTMLElement[] {
     const counts = t(
-      "{0} segmentations, {1} other DICOM files, {2} other files; only the one that you choose is sent.",
+      "{0} segmentations, {1} other DICOM files, {2} other files; only what you choose is sent.",
       volumes.length,
       images,
       others,
     );
     if (volumes.length === 0)
       return [alertMessage(t("There is no segmentation among the files.")), make("p", { className: "faint" }, counts)];
+    const all = make("button", { type: "button", id: "patient-all", className: "primary" });
+    all.textContent = t("Open all {0} as one patient", volumes.length);
+    all.title = t("Programs such as TotalSegmentator, MOOSE and CADS write a file for each structure or model");
+    all.onclick = () => void this.importing.read(volumes);
     const rows = volumes.map((file) => {
       const words = make("div", {}, make("b", {}, file.name), make("span", {}, `${fixed(file.size / 1e6, 1)} MB`));
-      const read = make("button", { type: "button", onclick: () => void this.importing.read(file) }, t("Open"));
+      const read = make("button", { type: "button", onclick: () => void this.importing.read([file]) }, t("Open"));
       read.ariaLabel = `${t("Open")}: ${file.name}`;
       return make("li", {}, words, read);
     });
-    return [make("p", { className: "faint" }, counts), make("ul", {}, ...rows)];
+    return [
+      make("p", { className: "faint" }, counts),
+      make("div", { className: "acts" }, all),
+      make("ul", { className: "label-rows" }, ...rows),
+    ];
   }
 
   private showTable(labels: LabelTable): void {
@@ -116,7 +129,7 @@ export class PatientDialog {
       sending: t("Sending the segmentation…"),
       reading: t("Reading the labels…"),
       opening: t("Compiling the scene…"),
-      making: t("Making the patient: {0}", state.kind === "making" ? state.doing : ""),
+      making: t("Making the patient: {0}", state.kind === "making" ? stepName(state.doing) : ""),
     }[state.kind as "sending"];
     const bar = make("progress", { max: 1, ariaLabel: t("Progress of the patient") });
     if (done !== undefined) bar.value = done;
@@ -152,7 +165,7 @@ export class PatientDialog {
     const verdict = readiness?.verdict ?? ReadinessVerdict.UNSPECIFIED;
     const heading = make("p", { id: "patient-verdict" }, make("b", {}, t(verdicts[verdict] ?? "")));
     heading.dataset.verdict = ReadinessVerdict[verdict];
-    const reasons = (readiness?.findings ?? []).map(({ what }) => make("li", {}, what));
+    const reasons = (readiness?.findings ?? []).map((finding) => make("li", {}, findingWords(finding)));
     const parts: HTMLElement[] = [heading, make("ul", { id: "patient-reasons" }, ...reasons)];
     if (diaphragm !== undefined) {
       const shares = [diaphragm.areaCm2, 100 * diaphragm.extrapolated].map((value) => fixed(value, 0));
@@ -182,4 +195,10 @@ export class PatientDialog {
     anyway.onclick = () => void this.make(true);
     return anyway;
   }
+}
+
+/** Returns a step of the server, such as a body, in the page's language. */
+function stepName(doing: string): string {
+  if (doing === "reading") return t("reading the labels");
+  return doing.startsWith("waiting") ? t("waiting for earlier patients") : partName(doing);
 }

@@ -6,7 +6,7 @@ export interface Dropped {
 
 /** What the files of a folder are. */
 export interface FoundFiles {
-  /** Files that may hold labels: DICOM Segmentations, RT Structure Sets and NIfTI files. */
+  /** Files that may hold labels: DICOM Segmentations, RT Structure Sets, NIfTI files, and archives of them. */
   volumes: File[];
   /** Number of other DICOM files, such as the slices of a CT, which are not needed and not sent. */
   images: number;
@@ -42,7 +42,8 @@ async function kindOf(file: File): Promise<FileKind> {
   if (text.slice(128, 132) === "DICM") return labelClasses.test(text.replaceAll("\x02", "\0")) ? "volume" : "image";
   const isGzip = head[0] === 0x1f && head[1] === 0x8b;
   const isNifti = /^(n\+1|ni1|n\+2)/.test(text.slice(344)) || /^n\+2/.test(text.slice(4));
-  return isNifti || (isGzip && /\.nii\.gz$/i.test(file.name)) ? "volume" : "other";
+  const isArchive = text.startsWith("PK\x03\x04") || text.slice(257, 262) === "ustar";
+  return isNifti || isArchive || (isGzip && /\.nii\.gz$/i.test(file.name)) ? "volume" : "other";
 }
 
 /** Returns the files of what was dropped, also those in folders. */

@@ -5,7 +5,9 @@ import { type InspectLabelsResponse, type Patient, PatientService, PatientState 
 import { UploadKind } from "../gen/phrenic/v1/upload_pb";
 import { sendFile } from "../session/uploads";
 import { Signal } from "../state/signal";
+import { neutralNames } from "./file_words";
 import { findVolumes, type FoundFiles } from "./patient_files";
+import { packTar } from "./tar";
 
 /** State of the import; `done` is a fraction from 0 to 1. */
 export type ImportState =
@@ -25,6 +27,7 @@ export class PatientImport {
   readonly state = new Signal<ImportState>({ kind: "empty" });
   private readonly patients: Client<typeof PatientService>;
   private path = "";
+  private map = "";
   private patient: Patient | undefined;
   private running = new AbortController();
 
@@ -36,37 +39,53 @@ export class PatientImport {
     this.patients = createClient(PatientService, api.transport);
   }
 
-  /** Takes the volume among the files; if there are several, or none, shows what was found. */
+  /** Takes the volume among the files; if there are several, or none, shows what was found, for one or all to be read. */
   async take(files: File[]): Promise<void> {
     await this.end();
     const found = await findVolumes(files);
-    if (found.volumes.length === 1) return this.read(found.volumes[0]);
+    if (found.volumes.length === 1) return this.read(found.volumes);
     this.state.set({ kind: "choosing", found });
   }
 
-  /** Sends a volume and has it read. Its name stays here. */
-  async read(file: File): Promise<void> {
+  /**
+   * Sends label files of one patient and has them read. Their names stay here: of several files the words are sent that
+   * say what they show.
+   */
+  async read(files: File[]): Promise<void> {
     await this.end();
     await this.attempt(async (signal) => {
       this.state.set({ kind: "sending", done: 0 });
       const as = { name: "labels", kind: UploadKind.LABELS };
-      const { path } = await sendFile(this.api, file, as, (done) => {
+      const { path } = await sendFile(this.api, packed(files), as, (done) => {
         signal.throwIfAborted();
         this.state.set({ kind: "sending", done });
       });
       this.path = path;
+      this.map = "";
       signal.throwIfAborted();
-      this.state.set({ kind: "reading" });
-      const table = await this.patients.inspectLabels({ path }, { signal });
-      this.state.set({ kind: "naming", table });
+      await this.inspect(signal);
     });
+  }
+
+  /** Has the labels read by another program's map. */
+  async readBy(map: string): Promise<void> {
+    await this.attempt(async (signal) => {
+      this.map = map;
+      await this.inspect(signal);
+    });
+  }
+
+  private async inspect(signal: AbortSignal): Promise<void> {
+    this.state.set({ kind: "reading" });
+    const table = await this.patients.inspectLabels({ path: this.path, map: this.map }, { signal });
+    this.state.set({ kind: "naming", table });
   }
 
   /** Has the patient made of labels with these meanings, whose numbers are the volume's. */
   async make(labels: LabelMeaning[], anyway: boolean): Promise<void> {
     await this.attempt(async (signal) => {
       this.state.set({ kind: "making", done: 0, doing: "" });
-      const { patient } = await this.patients.createPatient({ path: this.path, labels, anyway });
+      const { patient } = await this.patients.createPatient({ path: this.path, map: this.map, labels, anyway });
       this.patient = patient;
       if (signal.aborted) return void (await this.forgetPatient());
       for await (const { patient: now } of this.patients.watchPatient({ patientId: patient!.id }, { signal })) {
@@ -126,4 +145,10 @@ export class PatientImport {
       if (!running.signal.aborted) this.state.set({ kind: "failed", message: errorText(error) });
     }
   }
+}
+
+function packed(files: File[]): File {
+  if (files.length === 1) return files[0];
+  const names = neutralNames(files.map(({ name }) => name));
+  return packTar(files.map((content, i) => ({ name: names[i], content })));
 }

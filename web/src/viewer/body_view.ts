@@ -9,7 +9,7 @@ import { pointMaterial, setDefine, setOpacity, surfaceMaterial } from "./materia
 import { addOverlays, type Overlay, type OverlayHost, type OverlayKind } from "./overlays";
 import { ThickLines } from "./thick_lines";
 import { tissueOf } from "./tissues";
-import { VertexColors } from "./vertex_colors";
+import { VertexColors, withTemplate } from "./vertex_colors";
 
 /** Opacity of a faded body. */
 const fadedOpacity = 0.07;
@@ -51,7 +51,8 @@ export class BodyView implements OverlayHost {
       this.normals = new THREE.BufferAttribute(new Float32Array(body.rest.length), 3);
       this.mesh = this.addSurface(this.normals);
       const { geometry, material } = this.mesh;
-      const own = body.rigidLinks.length > 0 ? this.tendonColors() : undefined;
+      const tendon = body.rigidLinks.length > 0 ? this.tendonColors() : undefined;
+      const own = withTemplate(body.color, body.rest.length / 3, body.template, tendon);
       this.vertexColors = new VertexColors(geometry, material, body.color, own);
     }
     if (!solid || diagram) this.addPointsAndLines(solid ? lighter(body.color) : body.color);

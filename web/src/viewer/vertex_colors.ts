@@ -1,5 +1,22 @@
 import * as THREE from "three";
 
+/** Colour of what was filled from the generated thorax, and is not the person's. */
+export const templateColor = "#8a5cd6";
+
+/** Returns a surface's own colours with those of its vertices that were filled. */
+export function withTemplate(
+  color: string,
+  count: number,
+  filled: Uint32Array | undefined,
+  own: THREE.BufferAttribute | undefined,
+): THREE.BufferAttribute | undefined {
+  if (!filled?.length) return own;
+  const colors = own ?? new THREE.BufferAttribute(new Float32Array(3 * count), 3);
+  if (own === undefined) for (let i = 0; i < count; i++) new THREE.Color(color).toArray(colors.array, 3 * i);
+  for (const vertex of filled) new THREE.Color(templateColor).toArray(colors.array, 3 * vertex);
+  return colors;
+}
+
 /** The colours of a surface: its own, uniform or per vertex, or those of a field. */
 export class VertexColors {
   private field: THREE.BufferAttribute | undefined;

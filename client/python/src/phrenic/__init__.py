@@ -33,6 +33,7 @@ from .fits import Fit, fit
 from .frame import Body, Frame, State
 from .jobs import Comparison, Physiology, Study
 from .operations import EVERYTHING, SimulationWarning
+from .patients import Patient, patient
 from .runs import Run, batch
 from .server import LocalServer, Server, connect, default_server, local
 from .session import Session, Studies
@@ -48,6 +49,7 @@ __all__ = [
     "Fit",
     "Frame",
     "LocalServer",
+    "Patient",
     "Physiology",
     "Run",
     "Server",
@@ -66,6 +68,7 @@ __all__ = [
     "errors",
     "fit",
     "local",
+    "patient",
 ]
 
 

@@ -39,6 +39,7 @@ from .operations import (
     session_ids,
     source_of,
 )
+from .patients import LabelFiles, Patient, made
 from .runs import Run, parts, request_of
 from .samples import Sample, SampleReader
 from .server import ServerFacts, default_server
@@ -462,3 +463,16 @@ async def fit(
     """As phrenic.fit, with its options."""
     async with _connected(server) as connection:
         return await connection.run(fitted(source_of(scene, resolution_mm), landmarks, options, progress))
+
+
+async def patient(
+    files: LabelFiles,
+    *,
+    labels: Optional[Mapping[int, str]] = None,
+    progress: jobs.Progress = None,
+    server: Optional[Server] = None,
+    **options: Any,
+) -> Patient:
+    """As phrenic.patient, with its options."""
+    async with _connected(server) as connection:
+        return await connection.run(made(files, labels, options, progress))

@@ -19,11 +19,13 @@ from .v1 import (
     export_pb2_grpc,
     fit_pb2_grpc,
     frames_pb2_grpc,
+    patients_pb2_grpc,
     samples_pb2_grpc,
     server_pb2_grpc,
     session_pb2_grpc,
     study_pb2_grpc,
     tissue_pb2_grpc,
+    upload_pb2_grpc,
 )
 
 SERVICES: dict[str, Callable[[Any], Any]] = {
@@ -32,12 +34,14 @@ SERVICES: dict[str, Callable[[Any], Any]] = {
     "ExportService": export_pb2_grpc.ExportServiceStub,
     "FitService": fit_pb2_grpc.FitServiceStub,
     "FrameService": frames_pb2_grpc.FrameServiceStub,
+    "PatientService": patients_pb2_grpc.PatientServiceStub,
     "SampleService": samples_pb2_grpc.SampleServiceStub,
     "SceneService": session_pb2_grpc.SceneServiceStub,
     "ServerService": server_pb2_grpc.ServerServiceStub,
     "SessionService": session_pb2_grpc.SessionServiceStub,
     "StudyService": study_pb2_grpc.StudyServiceStub,
     "TissueService": tissue_pb2_grpc.TissueServiceStub,
+    "UploadService": upload_pb2_grpc.UploadServiceStub,
 }
 
 LONG = 3600.0

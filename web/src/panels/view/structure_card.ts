@@ -22,6 +22,7 @@ export function structureCard(
   const name = make("h2");
   const latin = make("p", { className: "latin", lang: "la" });
   const definition = make("p");
+  const filled = make("p", { className: "fault", id: "structure-filled" });
   const alone = make("button", { type: "button", id: "structure-alone" });
   const close = make("button", { type: "button", onclick: () => chosen.set(undefined) }, t("Close"));
   const size = make(
@@ -36,12 +37,15 @@ export function structureCard(
     if (isolated.value !== undefined) showAll();
     else if (chosen.value !== undefined) isolate(chosen.value);
   };
-  card.append(name, latin, definition, make("div", { className: "row" }, ...buttons));
+  card.append(name, latin, definition, filled, make("div", { className: "row" }, ...buttons));
   chosen.subscribe((structure) => {
     card.hidden = structure === undefined;
     name.textContent = structure?.name ?? "";
     latin.textContent = structure?.latin ?? "";
     definition.textContent = structure?.definition ?? "";
+    const percent = Math.round(100 * (structure?.filled ?? 0));
+    filled.textContent = t("{0} % of it is filled from the generated thorax, not seen in the scan.", percent);
+    filled.hidden = percent === 0;
   });
   isolated.subscribe((structure) => {
     alone.textContent = structure === undefined ? t("Show alone") : t("Show all");

@@ -1,0 +1,110 @@
+#include "server/imaging/labels/label_archive.h"
+
+#include <archive.h>
+#include <archive_entry.h>
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "server/imaging/label_file.h"
+#include "server/imaging/labels/label_set.h"
+
+namespace phrenic::imaging {
+namespace {
+
+constexpr std::size_t kTarMark = 257;                     // byte of a tar file at which "ustar" is
+constexpr std::size_t kMostBytes = std::size_t{4} << 30;  // of all files
+constexpr int kMostEntries = 5000;                        // also folders and files that are left out
+
+using ArchiveReader = std::unique_ptr<archive, decltype(&archive_read_free)>;
+
+absl::Status Damaged(const std::string& name, archive* reader) {
+  const char* words = archive_error_string(reader);
+  return absl::InvalidArgumentError(absl::StrCat(name, ": cannot be unpacked: ", words == nullptr ? "damaged" : words,
+                                                 "; pack the label files again, or give them one by one"));
+}
+
+// Appends the file that the reader is at. `left` is what all files may still have [bytes].
+absl::Status ReadEntry(const std::string& name, archive* reader, std::size_t& left, std::string& bytes) {
+  constexpr std::size_t kBlock = std::size_t{1} << 18;
+  std::string block(kBlock, '\0');
+  while (true) {
+    const la_ssize_t got = archive_read_data(reader, block.data(), block.size());
+    if (got < 0) return Damaged(name, reader);
+    if (got == 0) return absl::OkStatus();
+    const auto size = static_cast<std::size_t>(got);
+    if (size > left) return absl::ResourceExhaustedError(absl::StrCat(name, ": its files have more than 4 GiB"));
+    left -= size;
+    bytes.append(block, 0, size);
+  }
+}
+
+// Collects what the files of an archive are.
+struct ArchivedLabels {
+  LabelSet labels;
+  std::vector<std::string> left_out;
+  int files = 0;
+};
+
+absl::Status AddFile(const std::string& file, std::string_view bytes, const std::string& choice, std::size_t max_voxels,
+                     ArchivedLabels& found) {
+  if (!IsLabelFile(bytes)) {
+    found.left_out.push_back(file);
+    return absl::OkStatus();
+  }
+  absl::StatusOr<LabelVolume> volume = ParseLabels(file, bytes, max_voxels);
+  if (!volume.ok()) return volume.status();
+  ++found.files;
+  return found.labels.Add(file, *std::move(volume), choice);
+}
+
+absl::StatusOr<LabelVolume> FinishSet(const std::string& name, ArchivedLabels found) {
+  if (found.files == 0) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": has no label file: NIfTI, DICOM Segmentation or RT Structure Set"));
+  }
+  absl::StatusOr<LabelVolume> volume = found.labels.Finish();
+  if (volume.ok() && !found.left_out.empty()) {
+    volume->remarks.push_back(
+        absl::StrCat("left out, because they are no label files: ", absl::StrJoin(found.left_out, ", ")));
+  }
+  return volume;
+}
+
+}  // namespace
+
+bool IsArchive(std::string_view bytes) {
+  return bytes.starts_with("PK\x03\x04") || (bytes.size() > kTarMark && bytes.substr(kTarMark).starts_with("ustar"));
+}
+
+absl::StatusOr<LabelVolume> ParseLabelArchive(const std::string& name, std::string_view bytes,
+                                              const std::string& choice, std::size_t max_voxels) {
+  const ArchiveReader reader(archive_read_new(), &archive_read_free);
+  archive_read_support_format_zip(reader.get());
+  archive_read_support_format_tar(reader.get());
+  if (archive_read_open_memory(reader.get(), bytes.data(), bytes.size()) != ARCHIVE_OK) {
+    return Damaged(name, reader.get());
+  }
+  ArchivedLabels found;
+  archive_entry* entry = nullptr;
+  std::size_t left = kMostBytes;
+  int code = ARCHIVE_OK, entries = 0;
+  while ((code = archive_read_next_header(reader.get(), &entry)) == ARCHIVE_OK) {
+    if (++entries > kMostEntries) {
+      return absl::ResourceExhaustedError(absl::StrCat(name, ": has more than ", kMostEntries, " files"));
+    }
+    const char* path = archive_entry_pathname(entry);
+    if (path == nullptr || archive_entry_filetype(entry) != AE_IFREG) continue;
+    const std::string file = path;
+    std::string content;
+    if (absl::Status status = ReadEntry(name, reader.get(), left, content); !status.ok()) return status;
+    if (absl::Status status = AddFile(file, content, choice, max_voxels, found); !status.ok()) return status;
+  }
+  if (code != ARCHIVE_EOF) return Damaged(name, reader.get());
+  return FinishSet(name, std::move(found));
+}
+
+}  // namespace phrenic::imaging

@@ -1,0 +1,26 @@
+// Label files packed as one: a zip or tar archive.
+#ifndef PHRENIC_SERVER_IMAGING_LABELS_LABEL_ARCHIVE_H_
+#define PHRENIC_SERVER_IMAGING_LABELS_LABEL_ARCHIVE_H_
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "absl/status/statusor.h"
+#include "server/imaging/label_volume.h"
+
+namespace phrenic::imaging {
+
+// True if the first bytes are those of a zip or tar archive.
+bool IsArchive(std::string_view bytes);
+
+// Reads every label file of an archive (label_file.h) as one volume (label_set.h); `choice` selects maps, as ReadMaps.
+// Files of other formats are left out, and a remark names them; archives in the archive are not read. INVALID_ARGUMENT
+// "name: ..." for a damaged archive, or one without label files; RESOURCE_EXHAUSTED for more voxels a file, or 4 GiB of
+// files; the errors of ParseLabels and LabelSet. Thread-safe.
+absl::StatusOr<LabelVolume> ParseLabelArchive(const std::string& name, std::string_view bytes, const std::string& choice,
+                                              std::size_t max_voxels = kMaxVoxels);
+
+}  // namespace phrenic::imaging
+
+#endif  // PHRENIC_SERVER_IMAGING_LABELS_LABEL_ARCHIVE_H_

@@ -1,0 +1,236 @@
+// Label files of one patient become one volume, whatever program wrote them; files that contradict each other are
+// refused.
+#include "server/imaging/labels/label_set.h"
+
+#include <archive.h>
+#include <archive_entry.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+#include "server/imaging/gzip.h"
+#include "server/imaging/label_file.h"
+#include "server/imaging/labels/label_archive.h"
+#include "server/imaging/labels/label_input.h"
+#include "server/imaging/labels/label_map.h"
+#include "server/imaging/mask.h"
+#include "server/imaging/nifti.h"
+#include "server/imaging/phantom.h"
+
+namespace phrenic::imaging {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using Files = std::map<std::string, LabelVolume>;
+
+const v1::LabelMap& Common() {
+  static const v1::LabelMap map = *ReadLabelMap(kNamesMap);
+  return map;
+}
+
+const LabelVolume& Whole() {
+  static const LabelVolume whole = [] {
+    LabelVolume volume = *MakePhantom(*FindPhantomBody("adult"), {6, 0, 0, 1}, Common());
+    volume.names.clear();
+    return volume;
+  }();
+  return whole;
+}
+
+// Returns the volume with other numbers; labels that become 0 are left out.
+LabelVolume Renumbered(const std::function<int(const v1::LabelMeaning&)>& number) {
+  std::vector<Label> becomes(65536);
+  for (const v1::LabelMeaning& label : Common().labels()) {
+    becomes[label.number()] = static_cast<Label>(number(label));
+  }
+  LabelVolume volume = Whole();
+  for (Label& label : volume.labels) label = becomes[label];
+  return volume;
+}
+
+// Returns the labels of another map alone, with its numbers.
+LabelVolume By(const std::string& map) {
+  const v1::LabelMap other = *ReadLabelMap(map);
+  return Renumbered([&other](const v1::LabelMeaning& label) {
+    for (const v1::LabelMeaning& own : other.labels()) {
+      if (own.name() == label.name()) return own.number();
+    }
+    return 0;
+  });
+}
+
+// Returns a mask of one label.
+LabelVolume Alone(const std::string& name) {
+  return Renumbered([&name](const v1::LabelMeaning& label) { return label.name() == name ? 1 : 0; });
+}
+
+absl::StatusOr<LabelVolume> Merge(const Files& files) {
+  LabelSet set;
+  for (const auto& [name, volume] : files) {
+    if (absl::Status status = set.Add(name, volume, ""); !status.ok()) return status;
+  }
+  return set.Finish();
+}
+
+// Returns the voxels of each structure.
+std::map<std::string, std::size_t> Voxels(const LabelVolume& volume) {
+  std::vector<std::string> remarks;
+  LabelVolume united = volume;
+  const v1::LabelMap map = UniteLabels(Resolve(WithCommonNames(Common()), volume, remarks), united);
+  const std::map<Label, Extent> extents = Extents(united);
+  std::map<std::string, std::size_t> voxels;
+  for (const v1::LabelMeaning& label : map.labels()) {
+    const auto extent = extents.find(static_cast<Label>(label.number()));
+    if (extent != extents.end()) voxels[label.name()] = extent->second.voxels;
+  }
+  return voxels;
+}
+
+std::string Tar(const std::map<std::string, std::string>& files) {
+  std::string bytes(std::size_t{64} << 20, '\0');
+  std::size_t used = 0;
+  archive* tar = archive_write_new();
+  archive_write_set_format_ustar(tar);
+  archive_write_open_memory(tar, bytes.data(), bytes.size(), &used);
+  for (const auto& [name, content] : files) {
+    archive_entry* entry = archive_entry_new();
+    archive_entry_set_pathname(entry, name.c_str());
+    archive_entry_set_size(entry, static_cast<la_int64_t>(content.size()));
+    archive_entry_set_filetype(entry, AE_IFREG);
+    archive_write_header(tar, entry);
+    archive_write_data(tar, content.data(), content.size());
+    archive_entry_free(entry);
+  }
+  archive_write_close(tar);
+  archive_write_free(tar);
+  bytes.resize(used);
+  return bytes;
+}
+
+std::string Nifti(const LabelVolume& volume) { return Deflate(WriteNifti(volume)); }
+
+TEST(LabelSet, AFileForEachStructureIsTheWholeVolume) {
+  Files files;
+  for (const v1::LabelMeaning& label : Common().labels()) {
+    LabelVolume alone = Alone(label.name());
+    if (!Extents(alone).empty()) files.emplace("case 12/" + label.name() + ".nii.gz", std::move(alone));
+  }
+  const absl::StatusOr<LabelVolume> merged = Merge(files);
+  ASSERT_TRUE(merged.ok()) << merged.status();
+  LabelVolume named = Whole();
+  for (const v1::LabelMeaning& label : Common().labels()) named.names[label.number()] = label.name();
+  EXPECT_EQ(Voxels(*merged), Voxels(named));
+  EXPECT_GT(Voxels(*merged).size(), 40U);
+}
+
+// Four files of MOOSE, and four of CADS, with their own numbers, are the same structures.
+TEST(LabelSet, FilesOfMooseAndCadsAreTheSameStructures) {
+  const Files moose = {{"CT_Organs_0000.nii.gz", By("moose-organs")},
+                       {"CT_Ribs_0000.nii.gz", By("moose-ribs")},
+                       {"CT_VertebralBody_0000.nii.gz", By("moose-vertebrae")}};
+  const Files cads = {{"scan_part_551.nii.gz", By("cads-551")},
+                      {"scan_part_552.nii.gz", By("cads-552")},
+                      {"scan_part_555.nii.gz", By("cads-555")},
+                      {"scan_part_556.nii.gz", By("cads-556")}};
+  const absl::StatusOr<LabelVolume> of_moose = Merge(moose), of_cads = Merge(cads);
+  ASSERT_TRUE(of_moose.ok() && of_cads.ok()) << of_moose.status() << of_cads.status();
+  std::map<std::string, std::size_t> expected = Voxels(*of_cads);
+  EXPECT_EQ(expected.count("heart"), 1U);
+  expected.erase("heart");
+  EXPECT_EQ(Voxels(*of_moose), expected);
+  EXPECT_GE(expected.size(), 24U + 15U + 2U);
+  EXPECT_THAT(of_moose->remarks, Contains(HasSubstr("moose-vertebrae")));
+}
+
+TEST(LabelSet, SpellingsOfNamesAreOneStructure) {
+  for (const char* file : {"Rib-left-7.nii.gz", "DOE_rib_7_L.nii.gz", "left rib 07.nii", "seventh_rib_left.nii.gz",
+                           "s12/Rib7_Left_0000.nii.gz"}) {
+    const absl::StatusOr<LabelVolume> merged = Merge({{file, Alone("rib_left_7")}});
+    ASSERT_TRUE(merged.ok()) << merged.status();
+    EXPECT_EQ(Voxels(*merged).count("rib_left_7"), 1U) << file;
+  }
+  const absl::StatusOr<LabelVolume> unknown = Merge({{"kidney_left.nii.gz", Alone("rib_left_7")}});
+  EXPECT_THAT(unknown->remarks, Contains(HasSubstr("not known by their names or numbers: kidney_left.nii.gz")));
+}
+
+TEST(LabelSet, FilesOfDifferentGridsAreRefusedWithBothGrids) {
+  LabelVolume shifted = Alone("rib_left_8");
+  shifted.to_patient.pretranslate(Eigen::Vector3d(0, 0, 3));
+  const absl::Status status = Merge({{"rib_left_7.nii", Alone("rib_left_7")}, {"rib_left_8.nii", shifted}}).status();
+  EXPECT_TRUE(absl::IsInvalidArgument(status));
+  EXPECT_THAT(std::string(status.message()), HasSubstr("rib_left_8.nii: has"));
+  EXPECT_THAT(std::string(status.message()), HasSubstr("resample this file"));
+}
+
+TEST(LabelSet, OneStructureInTwoFilesIsRefusedUnlessItIsTheSame) {
+  const Files other = {{"a/liver.nii", Alone("liver")}, {"b/liver.nii", Alone("spleen")}};
+  EXPECT_THAT(std::string(Merge(other).status().message()), HasSubstr("b/liver.nii: \"liver\" is in a/liver.nii too"));
+  const absl::StatusOr<LabelVolume> same = Merge({{"a/liver.nii", Alone("liver")}, {"b/liver.nii", Alone("liver")}});
+  ASSERT_TRUE(same.ok()) << same.status();
+  EXPECT_EQ(Voxels(*same), Voxels(*Merge({{"liver.nii", Alone("liver")}})));
+}
+
+// A lung and its lobes, or a heart and its chambers, may both have files.
+TEST(LabelSet, PartsCountBeforeTheWhole) {
+  LabelVolume lung = Renumbered([](const v1::LabelMeaning& label) {
+    return label.anatomy().structure() == v1::STRUCTURE_LUNG && label.anatomy().side() == v1::SIDE_LEFT ? 1 : 0;
+  });
+  LabelVolume lobe = lung;
+  const Extent extent = Extents(lung).begin()->second;
+  const std::size_t below = lung.Index({0, 0, (2 * extent.low.z() + extent.high.z()) / 3});
+  std::fill(lobe.labels.begin(), lobe.labels.begin() + static_cast<std::ptrdiff_t>(below), Label{0});
+  const absl::StatusOr<LabelVolume> merged = Merge({{"lung_left.nii", lung}, {"lung_upper_lobe_left.nii", lobe}});
+  ASSERT_TRUE(merged.ok()) << merged.status();
+  EXPECT_EQ(Voxels(*merged).count("lung_upper_lobe_left"), 1U);
+  LabelVolume left = Alone("heart"), right = left;
+  const std::size_t half = left.labels.size() / 2;
+  std::fill(left.labels.begin(), left.labels.begin() + static_cast<std::ptrdiff_t>(half), Label{0});
+  std::fill(right.labels.begin() + static_cast<std::ptrdiff_t>(half), right.labels.end(), Label{0});
+  const Files chambers = {{"heart_atrium_left.nii", left}, {"heart_ventricle_right.nii", right}};
+  EXPECT_EQ(Voxels(*Merge(chambers)), Voxels(*Merge({{"heart.nii", Alone("heart")}})));
+}
+
+TEST(LabelSet, AnArchiveIsReadAsItsFiles) {
+  const std::string liver = Nifti(Alone("liver")), ribs = Nifti(By("moose-ribs"));
+  const std::string tar = Tar({{"liver.nii.gz", liver}, {"CT_Ribs.nii.gz", ribs}, {"notes.txt", "seen by K."}});
+  ASSERT_TRUE(IsArchive(tar));
+  const absl::StatusOr<LabelInput> input = ParseLabelInput("labels", tar, "");
+  ASSERT_TRUE(input.ok()) << input.status();
+  EXPECT_EQ(input->meanings.labels_size(), 1 + 24 + 1);
+  EXPECT_THAT(input->volume.remarks, Contains(HasSubstr("no label files: notes.txt")));
+  EXPECT_THAT(std::string(ParseLabelInput("labels", Tar({{"a.txt", "a"}}), "").status().message()),
+              HasSubstr("has no label file"));
+  for (const std::size_t length : {std::size_t{700}, liver.size() / 2, tar.size() / 2}) {
+    EXPECT_TRUE(absl::IsInvalidArgument(ParseLabelInput("labels", tar.substr(0, length), "").status())) << length;
+  }
+}
+
+TEST(LabelSet, AFolderAndFilesWithTheirOwnMapsAreRead) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "label_set";
+  std::filesystem::create_directories(folder / "model");
+  const auto write = [&folder](const std::string& name, const std::string& bytes) {
+    std::ofstream(folder / name, std::ios::binary) << bytes;
+    return (folder / name).string();
+  };
+  write("heart.nii.gz", Nifti(Alone("heart")));
+  const std::string ribs = write("model/out.nii.gz", Nifti(By("moose-ribs")));
+  write("readme.txt", "text");
+  const absl::StatusOr<LabelInput> all = ReadLabelInput({folder.string()}, {});
+  ASSERT_TRUE(all.ok()) << all.status();
+  EXPECT_EQ(all->meanings.labels_size(), 1 + 25);
+  const absl::StatusOr<LabelInput> chosen = ReadLabelInput({folder.string()}, {"", {{"out.nii.gz", "moose-ribs"}}});
+  ASSERT_TRUE(chosen.ok()) << chosen.status();
+  EXPECT_EQ(chosen->meanings.SerializeAsString(), all->meanings.SerializeAsString());
+  EXPECT_THAT(std::string(ReadLabelInput({ribs}, {"", {{"x.nii", "cads-555"}}}).status().message()),
+              HasSubstr("x.nii=cads-555: no label file"));
+  EXPECT_TRUE(absl::IsNotFound(ReadLabelInput({(folder / "model").string(), "/nowhere.nii"}, {}).status()));
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace phrenic::imaging
