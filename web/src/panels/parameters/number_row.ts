@@ -83,6 +83,7 @@ export class NumberRow {
     this.showError(fault);
     if (fault !== undefined) return;
     this.slider.value = String(sliderPosition(this.control, value));
+    this.write(value);
     this.events.set(value);
   }
 
