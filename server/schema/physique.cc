@@ -18,7 +18,7 @@ constexpr double kWomanSlope = 3;                                        // [deg
 constexpr double kSlopeAYear = -0.1, kKyphosisAYear = 0.3;               // [degrees]
 constexpr double kBarrelDepth = 0.22;                                    // more than 1
 constexpr double kBarrelSlope = -6;                                      // [degrees]
-constexpr double kBarrelRightDome = -0.02, kBarrelLeftDome = -0.011;     // [m]
+constexpr double kBarrelDomes = -0.02;                                   // [m]
 constexpr double kYoungest = 24, kOldest = 75;                           // in whom compliance was measured [years]
 constexpr double kYoungGroup = 31.5, kOldGroup = 65;                     // middles of the two groups [years]
 constexpr double kOldCage = 0.114 / 0.164, kOldAbdomen = 0.020 / 0.032;  // compliance of the old, of the young one's
@@ -51,8 +51,8 @@ v1::Physique CompletePhysique(const v1::Physique& physique) {
   Choose(v1::Physique::kChestDepthFieldNumber, chest * (1 + kBarrelDepth * barrel), full);
   Choose(v1::Physique::kRibSlopeDegreesFieldNumber,
          (woman ? kWomanSlope : 0) + kSlopeAYear * years + kBarrelSlope * barrel, full);
-  Choose(v1::Physique::kRightDomeHeightFieldNumber, kBarrelRightDome * barrel, full);
-  Choose(v1::Physique::kLeftDomeHeightFieldNumber, kBarrelLeftDome * barrel, full);
+  Choose(v1::Physique::kRightDomeHeightFieldNumber, kBarrelDomes * barrel, full);
+  Choose(v1::Physique::kLeftDomeHeightFieldNumber, kBarrelDomes * barrel, full);
   Choose(v1::Physique::kScoliosisDegreesFieldNumber, 0, full);
   Choose(v1::Physique::kKyphosisDegreesFieldNumber, kKyphosisAYear * years, full);
   return full;

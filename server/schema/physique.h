@@ -6,8 +6,7 @@
 //   chest width     1       * 0.95
 //   chest depth     1       * 0.95                             * 1.22
 //   rib slope       0       + 3       - 0.1                    - 6
-//   dome heights    0                                          - 0.02 right, - 0.011 left: the same part of what they
-//                                                              stand above the sternal margin, 36 and 20 mm
+//   dome heights    0                                          - 0.02
 //   kyphosis        0                 + 0.3
 //   compliance of the rib cage    1   - 0.30 / 34 from 31 to 65 years, the same line from 24 to 75
 //   of the abdominal wall         1   - 0.37 / 34

@@ -16,7 +16,7 @@ v1::Physique BodyOf(const std::string& text) {
 
 v1::Scene BreathingScene(const std::string& physique) {
   const auto scene = ParseScene("x.textproto", R"(
-    name: "x"
+    name: "x" bodies { name: "a" role: ROLE_SEEN generated {} }
     forces { muscle { body: "a" from_region: "rim" tendon_region: "tendon" passive_regions: "hiatus" } }
     forces { thorax_pressures { body: "a" wall: "w" lungs { recoil_rate: 6.5e-4 } } }
     forces { chest_wall { wall: "w" segment_compliance: 8e-7 } })" +
