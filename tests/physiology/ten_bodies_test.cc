@@ -4,12 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "server/anatomy/anatomy.h"
 #include "server/mechanics/compile/compile.h"
 #include "server/mechanics/compile/presets.h"
-#include "server/physiology/measures.h"
+#include "server/physiology/rows.h"
 #include "server/schema/body_size.h"
 #include "server/schema/physique.h"
 #include "tests/physiology/generated_thorax.h"
@@ -58,7 +59,7 @@ std::unique_ptr<BodyBreath> Breathe(const v1::Scene& scene) {
 }
 
 // A body by its place in the list, and the range of its right dome's descent [mm]: that of health, and with a barrel
-// chest 40 to 80 % of health's 14.3 mm, as in COPD. That of the kyphosis is 10.5 with a mesh of 5 mm.
+// chest 40 to 80 % of health's 14.3 mm, as in COPD.
 struct BreathingBody {
   size_t place;
   double least = 10, most = 25;
@@ -90,13 +91,31 @@ TEST_P(TenBodiesBreathe, AQuietBreathOfTheirSizeWithoutFlaws) {
 
 INSTANTIATE_TEST_SUITE_P(Bodies, TenBodiesBreathe,
                          testing::Values(BreathingBody{3}, BreathingBody{4}, BreathingBody{6, 5.7, 11.4},
-                                         BreathingBody{9, 8}));
+                                         BreathingBody{9}));
 
 // The cause: with the adult's tissues and lungs the same muscles of a small body leave too much to the abdomen.
 TEST(ForcesOfASmallBody, OfTheAdultGiveTheAbdomenTooMuch) {
   v1::Scene scene = BodyScene(TenBodies()[3].physique);
   scene.clear_physique();  // the bodies' own stay
   EXPECT_GT(Breathe(scene)->abdominal_share, 75);
+}
+
+// The adult's ranges are those of the table; of a small body volumes are smaller, and shares are everybody's.
+TEST(RangesOfBodies, FollowTheLungsInLitresAloneAndAreTheTablesInTheAdult) {
+  const v1::Physique adult = TenBodies()[0].physique, small = TenBodies()[3].physique;
+  for (const auto rows : {physiology::RowsOfHealth(), physiology::RowsOfChanges()}) {
+    for (const physiology::Row& row : rows) {
+      EXPECT_EQ(physiology::RangeFor(row, adult).low, row.low) << row.what;
+      EXPECT_EQ(physiology::RangeFor(row, adult).high, row.high) << row.what;
+      const double of_small = physiology::RangeFor(row, small).high, high = row.high;
+      const std::string unit = row.unit;
+      if (unit == "l") {
+        EXPECT_LT(std::abs(of_small), 0.7 * std::abs(high)) << row.what;
+      } else if (unit != "mm") {
+        EXPECT_EQ(of_small, high) << row.what;
+      }
+    }
+  }
 }
 
 }  // namespace
