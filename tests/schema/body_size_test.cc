@@ -73,7 +73,8 @@ TEST(ForcesOfABody, FollowItsSize) {
   const auto& of = adult.forces(1).thorax_pressures().lungs();
   EXPECT_EQ(lungs.room(), size.inspired * of.room());
   EXPECT_EQ(lungs.rest_volume(), size.resting * of.rest_volume());
-  EXPECT_DOUBLE_EQ(lungs.resistance() * lungs.rest_volume(), of.resistance() * of.rest_volume()) << "specific resistance";
+  EXPECT_DOUBLE_EQ(lungs.resistance() * lungs.rest_volume(), of.resistance() * of.rest_volume())
+      << "specific resistance";
   EXPECT_EQ(lungs.recoil_rate(), 6.5e-4);
   EXPECT_EQ(scene.forces(2).chest_wall().compliance(), size.volume * adult.forces(2).chest_wall().compliance());
   EXPECT_EQ(scene.forces(0).muscle().thickness(), size.length * adult.forces(0).muscle().thickness());
