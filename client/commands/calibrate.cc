@@ -52,6 +52,7 @@ std::string CommandOf(const CalibrateOptions& options) {
   if (options.scene.resolution_mm > 0) {
     absl::StrAppend(&line, " --resolution ", FormatNumber(options.scene.resolution_mm));
   }
+  for (const std::string& number : options.scene.physique) absl::StrAppend(&line, " --physique ", number);
   if (!options.preset.empty()) absl::StrAppend(&line, " --preset ", options.preset);
   for (const std::string& setting : options.settings) absl::StrAppend(&line, " --set ", setting);
   if (options.vary != CalibrateOptions().vary) {

@@ -39,14 +39,15 @@ bool Measures(const v1::Scene& scene, const char* name) {
                      [name](const v1::Measure& measure) { return measure.name() == name; });
 }
 
-v1::HealthRange RangeOf(const Row& row, const Shown& shown) {
+v1::HealthRange RangeOf(const Row& row, const Shown& shown, const v1::Scene& scene) {
   v1::HealthRange range;
   range.set_breath(row.breath);
   range.set_what(row.what);
   range.set_measure(shown.measure);
   range.set_change(shown.change);
-  range.set_low(ToSi(row.unit) * row.low);
-  range.set_high(ToSi(row.unit) * row.high);
+  const Range of_body = RangeFor(row, scene.physique());
+  range.set_low(ToSi(row.unit) * of_body.low);
+  range.set_high(ToSi(row.unit) * of_body.high);
   range.set_source(row.source);
   return range;
 }
@@ -59,7 +60,7 @@ std::vector<v1::HealthRange> HealthRanges(const v1::Scene& scene) {
   for (const Row& row : RowsOfHealth()) {
     for (const Shown& shown : kShown) {
       const bool judged = row.high > row.low && std::string(row.what) == shown.what;
-      if (judged && Measures(scene, shown.measure)) ranges.push_back(RangeOf(row, shown));
+      if (judged && Measures(scene, shown.measure)) ranges.push_back(RangeOf(row, shown, scene));
     }
   }
   return ranges;

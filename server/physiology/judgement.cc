@@ -36,8 +36,9 @@ v1::PhysiologyRow Judge(const Row& check, const Subject& subject, const Recordin
   row.set_breath(check.breath);
   row.set_what(check.what);
   row.set_unit(check.unit);
-  row.set_low(check.low);
-  row.set_high(check.high);
+  const Range range = RangeFor(check, subject.model.scene.physique());
+  row.set_low(range.low);
+  row.set_high(range.high);
   row.set_source(check.source);
   const Recording *breath = Find(recordings, check.breath), *other = breath;
   if (*check.other != '\0') other = Find(recordings, check.other);

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "phrenic/v1/scene.pb.h"
 #include "server/physiology/measures.h"
 
 namespace phrenic::physiology {
@@ -18,6 +19,10 @@ struct ChangedBreath {
 // What a scene may lack.
 enum class Needs { kSheet, kFibres, kWall, kBones, kLungs, kPressures };
 
+// What of a body's size a range follows: the ranges are the adult's, a man of 30 years and 1.75 m, and are multiplied
+// by this of the body over the adult's (schema/body_size.h). kLungs: total lung capacity.
+enum class Follows { kNothing, kLength, kLungs, kInspired, kVital };
+
 struct Row {
   const char* breath;
   const char* what;
@@ -27,6 +32,11 @@ struct Row {
   Needs needs;
   const char* source;
   const char* other = "";  // the breath that it is compared with
+  Follows follows = Follows::kNothing;
+};
+
+struct Range {
+  double low, high;
 };
 
 // What holds in every breath: none of these may exceed the value.
@@ -43,6 +53,9 @@ std::span<const ChangedBreath> ChangedBreaths();
 std::span<const Row> RowsOfHealth();
 std::span<const Row> RowsOfChanges();
 std::span<const FlawRow> FlawRows();
+
+// Returns the range of a row for a body of this physique.
+Range RangeFor(const Row& row, const v1::Physique& physique);
 
 }  // namespace phrenic::physiology
 

@@ -34,6 +34,11 @@ export class Server {
     return server;
   }
 
+  /** The id of the process. */
+  get pid(): number {
+    return this.process!.pid!;
+  }
+
   /** The address of the page. */
   get url(): string {
     return `http://127.0.0.1:${this.web}/`;

@@ -42,6 +42,21 @@ class SessionsTest(SessionTest):
         with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "wrong type"):
             late.set(breath_force="strong")
 
+    def test_a_body_is_chosen_by_its_numbers(self):
+        adult = self.session("thorax", resolution_mm=20)
+        small = self.session("thorax", resolution_mm=20, physique={"height": 1.5, "sex": "male"})
+        top = [s.frame(read=("bodies",))["t1"].positions[:, 2].max() for s in (adult, small)]
+        self.assertAlmostEqual(top[1] / top[0], 1.5 / 1.75, places=5)
+        self.assertLess(small.measure("lung volume"), 0.9 * adult.measure("lung volume"))
+        with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "did you mean height"):
+            self.session("thorax", physique={"hight": 1.5})
+        with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "physique.height: 3 is outside 1.2 to 2.2"):
+            self.session("thorax", physique={"height": 3})
+        with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "generates no body"):
+            self.session("cube-springs", physique={"height": 1.5})
+        with self.assertRaisesRegex(phrenic.errors.InvalidArgument, "give {name: value}"):
+            self.session("thorax", physique=1.5)
+
     def test_a_step_that_is_too_long_warns(self):
         session = self.session("pressure-lungs")
         with self.assertWarnsRegex(phrenic.SimulationWarning, "largest stable step") as caught:

@@ -1,5 +1,6 @@
 import { createGrpcWebTransport } from "@connectrpc/connect-web";
 import { App } from "./app/app";
+import { bodyOpener } from "./app/body_opener";
 import { patientOpener } from "./app/patient_opener";
 import { createApi, errorText } from "./connection/api";
 import { Credentials, credentialsInterceptor, storeJoinLink } from "./connection/credentials";
@@ -40,7 +41,13 @@ await openLanguage(languageOf(here, ownStorage, navigator.languages), fetchJson)
 
 const openSession = (sessionId: string) => location.assign(address(sessionId));
 const importPatient = patientOpener(api, openSession);
-const chooser = new SessionChooser(api, openSession, () => void importPatient());
+const chooseBody = bodyOpener(api, openSession);
+const chooser = new SessionChooser(
+  api,
+  openSession,
+  () => void chooseBody(),
+  () => void importPatient(),
+);
 document.body.append(chooser.element);
 
 const loading = elementById("loading");

@@ -10,7 +10,7 @@
 #include "server/anatomy/rib.h"
 #include "server/imaging/rib_axis.h"
 #include "server/mesh/units.h"
-#include "server/schema/schema.h"
+#include "server/schema/body_size.h"
 
 namespace phrenic::imaging {
 namespace {
@@ -188,48 +188,12 @@ double RelativeVolume(const std::vector<PatientBody>& bodies) {
   return 1;
 }
 
-void ScaleLungs(double volume, v1::LungPair& lungs) {
-  schema::FillDefaults(&lungs);
-  lungs.set_room(volume * lungs.room());
-  lungs.set_rest_volume(volume * lungs.rest_volume());
-  lungs.set_resistance(lungs.resistance() / volume);
-  lungs.set_peripheral_resistance(lungs.peripheral_resistance() / volume);
-  lungs.set_mediastinal_compliance(volume * lungs.mediastinal_compliance());
-  lungs.set_mediastinal_inertia(lungs.mediastinal_inertia() / volume);
-}
-
-void ScaleAbdomen(double volume, v1::Abdomen& abdomen) {
-  schema::FillDefaults(&abdomen);
-  abdomen.set_compliance(volume * abdomen.compliance());
-  abdomen.set_stiffening_volume_out(volume * abdomen.stiffening_volume_out());
-  abdomen.set_stiffening_volume_in(volume * abdomen.stiffening_volume_in());
-  abdomen.set_resistance(abdomen.resistance() / volume);
-}
-
-// Scales tensions with the size, so that the same pressures bend the sheet alike. The patient's mesh has no openings:
-// no muscle is passive tissue.
-void ScaleMuscle(double size, v1::Muscle& muscle) {
-  schema::FillDefaults(&muscle);
-  muscle.clear_passive_regions();
-  muscle.set_thickness(size * muscle.thickness());
-  muscle.set_resting_tension(size * muscle.resting_tension());
-  muscle.set_resting_tension_across(size * muscle.resting_tension_across());
-  muscle.set_passive_stiffness(size * muscle.passive_stiffness());
-  muscle.set_tendon_tension(size * muscle.tendon_tension());
-  muscle.set_tendon_stiffness(size * muscle.tendon_stiffness());
-}
-
-void AdaptForces(double size, double volume, v1::Scene& scene) {
+// The patient's mesh has no openings: no muscle is passive tissue.
+void AdaptForces(double length, double volume, v1::Scene& scene) {
   for (v1::Force& force : *scene.mutable_forces()) {
-    if (force.has_muscle()) ScaleMuscle(size, *force.mutable_muscle());
-    if (force.has_thorax_pressures()) {
-      ScaleLungs(volume, *force.mutable_thorax_pressures()->mutable_lungs());
-      ScaleAbdomen(volume, *force.mutable_thorax_pressures()->mutable_abdomen());
-    }
-    if (!force.has_chest_wall()) continue;
-    schema::FillDefaults(force.mutable_chest_wall());
-    force.mutable_chest_wall()->set_compliance(volume * force.chest_wall().compliance());
+    if (force.has_muscle()) force.mutable_muscle()->clear_passive_regions();
   }
+  schema::ScaleForces({.length = length, .volume = volume, .resting = volume, .inspired = volume}, &scene);
 }
 
 v1::Probe ProbeOf(const std::string& name, const std::string& body) {

@@ -19,6 +19,7 @@
 #include "server/mechanics/stability/largest_step.h"
 #include "server/mechanics/step/combination.h"
 #include "server/mechanics/step/step_plan.h"
+#include "server/schema/body_size.h"
 #include "server/schema/physique.h"
 #include "server/schema/schema.h"
 
@@ -172,6 +173,7 @@ absl::StatusOr<std::shared_ptr<const Model>> Compile(const v1::Scene& scene, con
   Model& model = builder.model;
   model.scene = scene;
   if (absl::Status status = schema::Resolve(&model.scene); !status.ok()) return status;
+  schema::ScaleForcesToPhysique(&model.scene);
   schema::FillDefaults(&model.scene);
   // Unset fields of these have a meaning, so that they must not be filled with defaults.
   model.scene.mutable_parameters()->CopyFrom(scene.parameters());

@@ -52,6 +52,7 @@ const tables: Record<string, string[]> = {
 const properties: Record<string, string[]> = {
   "app/app_shortcuts.ts": ["description"],
   "app/shortcuts.ts": ["description"],
+  "body/body_numbers.ts": ["title", "label"],
   "graphs/catalogue.ts": ["title"],
   "graphs/student_graphs.ts": ["title"],
 };
@@ -65,6 +66,7 @@ const others = [
   ..."upper lower front back wall".split(" "),
   ..."Space Healthy Ill Machine Breaths Supine Upright Prone".split(" "),
   ..."Flows Pressures Heights Energies".split(" "),
+  ..."Female Male".split(" "),
   ...["right dome", "left dome", "Right side", "Left side"],
   ...["right summit", "left summit", "sternum", "rib 8 right", "rib 8 left"],
   ...["PAGEDOWN", "PAGEUP", "ESCAPE"],
@@ -135,12 +137,19 @@ function fromScenes(): string[] {
   });
 }
 
-/** Returns the names and explanations of the live parameters. */
+/** Returns the names and explanations of the live parameters and of the numbers of a body. */
 function fromParameters(): string[] {
-  const proto = readFileSync(join(web, "../proto/phrenic/v1/parameters.proto"), "utf8");
+  const read = (name: string) => readFileSync(join(web, `../proto/phrenic/v1/${name}.proto`), "utf8");
+  const proto = read("parameters") + read("geometry").split("message Physique")[1];
   return [...proto.matchAll(/(?:\blabel|\bhelp|\(group\))\s*[:=]\s*((?:"[^"]*"\s*)+)/g)].map(([, quoted]) =>
     [...quoted.matchAll(/"([^"]*)"/g)].map(([, part]) => part).join(""),
   );
+}
+
+/** Returns the titles of the ready bodies. */
+function fromBodies(): string[] {
+  const lines = readFileSync(join(web, "../client/examples/bodies.txt"), "utf8").split("\n");
+  return lines.filter((line) => line !== "" && !line.startsWith("#")).map((line) => line.split(":")[0]);
 }
 
 function fromTerminology(): string[] {
@@ -155,6 +164,7 @@ export function keysOfSources(): Set<string> {
     ...fromPage("offline.html"),
     ...fromScenes(),
     ...fromParameters(),
+    ...fromBodies(),
     ...fromTerminology(),
     ...others,
   ];

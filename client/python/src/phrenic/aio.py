@@ -133,6 +133,7 @@ class Session(SessionOperations):
         preset: str = "",
         id: str = "",
         resolution_mm: Optional[float] = None,
+        physique: Optional[Mapping[str, Any]] = None,
         server: Optional["Server"] = None,
     ) -> None:
         super().__init__(session_pb2.Session(), "", owned=True)
@@ -140,8 +141,8 @@ class Session(SessionOperations):
             check_server(server, asynchronous=True)
         self._connection: Optional[Connection] = server.connection if server else None
         self._shared = server is not None
-        self._source = source_of(scene, resolution_mm)
-        self._creation: Optional[Operation[Any]] = create(scene, set, preset, id, resolution_mm)
+        self._source = source_of(scene, resolution_mm, physique)
+        self._creation: Optional[Operation[Any]] = create(scene, set, preset, id, resolution_mm, physique)
 
     def _begun(self) -> Connection:
         if self._connection is None:
@@ -379,9 +380,11 @@ class Server(ServerFacts):
         """As phrenic.Server.scenes."""
         return await self.connection.run(scenes())
 
-    async def describe(self, scene: Scene, resolution_mm: Optional[float] = None) -> session_pb2.DescribeSceneResponse:
+    async def describe(
+        self, scene: Scene, resolution_mm: Optional[float] = None, physique: Optional[Mapping[str, Any]] = None
+    ) -> session_pb2.DescribeSceneResponse:
         """As phrenic.Server.describe."""
-        return await self.connection.run(describe(scene, resolution_mm))
+        return await self.connection.run(describe(scene, resolution_mm, physique))
 
     async def sessions(self) -> list[str]:
         """As phrenic.Server.sessions."""
@@ -426,6 +429,7 @@ async def batch(
     fps: float = 20,
     preset: str = "",
     resolution_mm: Optional[float] = None,
+    physique: Optional[Mapping[str, Any]] = None,
     start: Union[Frame, State, None] = None,
     starts: Optional[Iterable[Union[Frame, State]]] = None,
     read: Sequence[str] = (),
@@ -436,7 +440,7 @@ async def batch(
 ) -> AsyncIterator[Run]:
     """As phrenic.batch: `async for run in batch(...)`. A loop that breaks ends the runs in progress when the iterator is
     closed: `async with contextlib.aclosing(batch(...)) as runs`."""
-    request = request_of(scene, seconds, fps, preset, resolution_mm, read, summary, threads)
+    request = request_of(scene, seconds, fps, preset, resolution_mm, physique, read, summary, threads)
     async with _connected(server) as connection:
         for part in parts(request, parameters, start, starts, finished, connection.target.retries):
             while not part.ended:

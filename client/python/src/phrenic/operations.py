@@ -20,7 +20,15 @@ from .errors import Aborted, AlreadyExists, Cancelled, Closed, DeadlineExceeded,
 from .frame import Frame, Geometry, frame_of, watched_frame
 from .names import Named, enum_names, enum_number, fill, look_up, nearest, row
 from .table import Table
-from .v1 import frames_pb2, parameters_pb2, samples_pb2, scene_pb2, session_pb2, state_pb2
+from .v1 import (
+    frames_pb2,
+    geometry_pb2,
+    parameters_pb2,
+    samples_pb2,
+    scene_pb2,
+    session_pb2,
+    state_pb2,
+)
 
 Scene = Union[str, Path, scene_pb2.Scene]
 """A name of the server's catalogue, a file of scene text, or a scene."""
@@ -33,10 +41,13 @@ class SimulationWarning(UserWarning):
     """What the server warns of: for example a time step above the largest stable one."""
 
 
-def source_of(scene: Scene, resolution_mm: Optional[float] = None) -> session_pb2.SceneSource:
-    """Returns the scene as requests name it. InvalidArgument names the line of a scene text that cannot be parsed."""
+def source_of(
+    scene: Scene, resolution_mm: Optional[float] = None, physique: Optional[Mapping[str, Any]] = None
+) -> session_pb2.SceneSource:
+    """Returns the scene as requests name it. InvalidArgument names the line of a scene text that cannot be parsed, or an
+    unknown number of a body."""
     edge = None if resolution_mm is None else finite("resolution_mm", resolution_mm)
-    source = session_pb2.SceneSource(resolution_mm=edge)
+    source = session_pb2.SceneSource(resolution_mm=edge, physique=physique_of(physique))
     if not isinstance(scene, (str, Path, scene_pb2.Scene)):
         raise InvalidArgument(f"scene: {scene!r} is neither a name, nor a .textproto file, nor a Scene")
     if isinstance(scene, scene_pb2.Scene):
@@ -54,6 +65,13 @@ def source_of(scene: Scene, resolution_mm: Optional[float] = None) -> session_pb
 def parameters_of(values: Optional[Mapping[str, Any]]) -> parameters_pb2.Parameters:
     """Returns live parameters. InvalidArgument for an unknown name, with the nearest one."""
     return fill(parameters_pb2.Parameters(), mapping("set", values), "parameter")
+
+
+def physique_of(values: Optional[Mapping[str, Any]]) -> Optional[geometry_pb2.Physique]:
+    """Returns a body's numbers; None for none. InvalidArgument for an unknown name, with the nearest one; the server checks
+    the ranges."""
+    given = mapping("physique", values)
+    return fill(geometry_pb2.Physique(), given, "number of a body") if given else None
 
 
 def parts_of(read: Sequence[str]) -> tuple[int, ...]:
@@ -375,12 +393,13 @@ def create(
     preset: str,
     id: str,
     resolution_mm: Optional[float],
+    physique: Optional[Mapping[str, Any]],
 ) -> Operation[session_pb2.CreateSessionResponse]:
     """Creates a session. Without `id`, this client chooses one, so that a repeat after a lost connection makes no second
     session; with one, a repeat that finds the session made is AlreadyExists."""
     request = session_pb2.CreateSessionRequest(
         session_id=text_of("id", id) or new_id(Path(str(getattr(scene, "name", scene))).stem),
-        source=source_of(scene, resolution_mm),
+        source=source_of(scene, resolution_mm, physique),
         parameters=parameters_of(set),
         preset=text_of("preset", preset),
     )
@@ -411,9 +430,11 @@ def _unmade(id: str) -> Operation[None]:
         pass
 
 
-def describe(scene: Scene, resolution_mm: Optional[float]) -> Operation[session_pb2.DescribeSceneResponse]:
+def describe(
+    scene: Scene, resolution_mm: Optional[float], physique: Optional[Mapping[str, Any]]
+) -> Operation[session_pb2.DescribeSceneResponse]:
     """Compiles a scene."""
-    request = session_pb2.DescribeSceneRequest(source=source_of(scene, resolution_mm))
+    request = session_pb2.DescribeSceneRequest(source=source_of(scene, resolution_mm, physique))
     return (yield Call("SceneService.DescribeScene", request, LONG))
 
 

@@ -75,6 +75,7 @@ def batch(
     fps: float = 20,
     preset: str = "",
     resolution_mm: Optional[float] = None,
+    physique: Optional[Mapping[str, Any]] = None,
     start: Union[Frame, State, None] = None,
     starts: Optional[Iterable[Union[Frame, State]]] = None,
     read: Sequence[str] = (),
@@ -89,14 +90,14 @@ def batch(
     are the same, bit for bit, at any number of threads. `start`: a frame of a session of this scene, with "positions",
     "velocities" and "scalars", from which every run goes on; `starts`: a state a run; default: the scene's start. (An
     integrator that remembers the step before, velocity_verlet or bdf2, begins there as after a reset.) `read`: parts of the last state,
-    "positions", "velocities" and "scalars". `summary`: instead of samples, the range of each measure, and an end at the first
-    step that reaches `seconds`. A loop that breaks ends the runs in progress; `finished`, the indices of the
+    "positions", "velocities" and "scalars". `physique`: the generated body, as of a Session.
+    `summary`: instead of samples, the range of each measure, and an end at the first step that reaches `seconds`. A loop that breaks ends the runs in progress; `finished`, the indices of the
     runs that it had, lets another call with the same arguments run the rest. After a lost connection the batch goes on by
     itself with the runs that are missing; Unavailable once `retries` attempts, a minute, have given none."""
     server = server or default_server()
     check_server(server)
     connection = server.connection
-    request = request_of(scene, seconds, fps, preset, resolution_mm, read, summary, threads)
+    request = request_of(scene, seconds, fps, preset, resolution_mm, physique, read, summary, threads)
     for part in parts(request, parameters, start, starts, finished, connection.target.retries):
         while not part.ended:
             try:
@@ -113,15 +114,16 @@ def request_of(
     fps: float,
     preset: str,
     resolution_mm: Optional[float],
+    physique: Optional[Mapping[str, Any]],
     read: Sequence[str],
     summary: bool,
     threads: Optional[int],
 ) -> batch_pb2.RunBatchRequest:
     """Returns the request without its runs."""
     return batch_pb2.RunBatchRequest(
-        source=source_of(scene, resolution_mm), preset=text_of("preset", preset), seconds=positive("seconds", seconds),
-        frames_per_second=positive("fps", fps), threads=whole("threads", threads or 0, most=INT32), read=_parts(read),
-        summary=bool(summary),
+        source=source_of(scene, resolution_mm, physique), preset=text_of("preset", preset),
+        seconds=positive("seconds", seconds), frames_per_second=positive("fps", fps),
+        threads=whole("threads", threads or 0, most=INT32), read=_parts(read), summary=bool(summary),
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import atexit
 import os
 import threading
 from pathlib import Path
-from typing import Any, Optional, Sequence, Union
+from typing import Any, Mapping, Optional, Sequence, Union
 
 from .arguments import names_of
 from .call import FIRST, RETRIES, Call, one
@@ -59,9 +59,11 @@ class Server(ServerFacts):
         """The catalogue: name, title, description, presets."""
         return self.connection.run(scenes())
 
-    def describe(self, scene: Scene, resolution_mm: Optional[float] = None) -> session_pb2.DescribeSceneResponse:
+    def describe(
+        self, scene: Scene, resolution_mm: Optional[float] = None, physique: Optional[Mapping[str, Any]] = None
+    ) -> session_pb2.DescribeSceneResponse:
         """Compiles a scene: what runs, what was left out and why, the largest stable step (report.stable_step)."""
-        return self.connection.run(describe(scene, resolution_mm))
+        return self.connection.run(describe(scene, resolution_mm, physique))
 
     def sessions(self) -> list[str]:
         """Ids of the sessions that the caller may see."""

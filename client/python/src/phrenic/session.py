@@ -44,19 +44,20 @@ class Session(SessionOperations):
         preset: str = "",
         id: str = "",
         resolution_mm: Optional[float] = None,
+        physique: Optional[Mapping[str, Any]] = None,
         server: Optional["Server"] = None,
     ) -> None:
         """`scene`: a name of the catalogue, a .textproto file or a Scene. `set`: live parameters by name. `id`: empty
-        for a new one."""
+        for a new one. `physique`: numbers of the generated body by name, {"height": 1.62, "sex": "female"}."""
         if server is None:
             from .server import default_server
 
             server = default_server()
         check_server(server)
         self._connection = server.connection
-        made = self._connection.run(create(scene, set, preset, id, resolution_mm))
+        made = self._connection.run(create(scene, set, preset, id, resolution_mm, physique))
         super().__init__(made.session, made.control_token, owned=True)
-        self._source = source_of(scene, resolution_mm)
+        self._source = source_of(scene, resolution_mm, physique)
 
     @classmethod
     def _of(

@@ -14,8 +14,8 @@ export interface RowEvents {
 /** A row to set a number: label, slider, entry, unit, reset, and an error message for invalid entries. */
 export class NumberRow {
   readonly element: HTMLElement;
-  private readonly slider: HTMLInputElement;
-  private readonly entry: HTMLInputElement;
+  protected readonly slider: HTMLInputElement;
+  protected readonly entry: HTMLInputElement;
   private readonly fault: HTMLElement;
   private dragging = false;
 
@@ -83,6 +83,7 @@ export class NumberRow {
     this.showError(fault);
     if (fault !== undefined) return;
     this.slider.value = String(sliderPosition(this.control, value));
+    this.write(value);
     this.events.set(value);
   }
 

@@ -13,14 +13,14 @@ export class SessionChooser {
   constructor(
     private readonly api: Api,
     private readonly open: (sessionId: string) => void,
-    /** Opens the dialog that makes a patient. */
+    /** Opens the dialogs that make a body and a patient. */
+    chooseBody: () => void,
     importPatient: () => void,
   ) {
     const close = make("button", { type: "button", onclick: () => this.element.close() }, t("Close"));
-    const patient = make("button", { type: "button", id: "patient-new" }, t("A patient from a segmentation"));
-    patient.onclick = () => {
-      this.element.close();
-      importPatient();
+    const leadTo = (id: string, words: string, next: () => void) => {
+      const onclick = () => (this.element.close(), next());
+      return make("button", { type: "button", id, onclick }, words);
     };
     this.words.setAttribute("role", "alert");
     this.element.append(
@@ -28,7 +28,12 @@ export class SessionChooser {
       this.sessions,
       make("h2", {}, t("Start a session of")),
       this.scenes,
-      patient,
+      make(
+        "div",
+        { className: "acts" },
+        leadTo("body-new", t("A body by its numbers"), chooseBody),
+        leadTo("patient-new", t("A patient from a segmentation"), importPatient),
+      ),
       this.words,
     );
   }
