@@ -19,18 +19,28 @@
 
 namespace phrenic {
 
-// Returns a shipped scene, for example "thorax", compiled; generated bodies have the resolution [mm] that the function
-// gives, their own for 0.
-inline std::shared_ptr<const Model> CompileShipped(const std::string& name,
-                                                   const std::function<double(const v1::Body&)>& resolution_mm) {
+// Returns a shipped scene, for example "thorax".
+inline v1::Scene ReadShipped(const std::string& name) {
   std::ifstream file(PHRENIC_SOURCE_DIR "/server/scenes/" + name + ".textproto");
   std::stringstream text;
   text << file.rdbuf();
-  return *Compile(*schema::ParseScene(name + ".textproto", text.str()), [=](const v1::Body& body) {
+  return *schema::ParseScene(name + ".textproto", text.str());
+}
+
+// Returns a scene compiled; generated bodies have the resolution [mm] that the function gives, their own for 0.
+inline std::shared_ptr<const Model> CompileScene(const v1::Scene& scene,
+                                                 const std::function<double(const v1::Body&)>& resolution_mm) {
+  return *Compile(scene, [=](const v1::Body& body) {
     v1::Generated shape = body.generated();
     if (const double wanted = resolution_mm(body); wanted > 0) shape.set_resolution_mm(wanted);
     return anatomy::Generate(body.anatomy(), shape);
   });
+}
+
+// Returns a shipped scene compiled.
+inline std::shared_ptr<const Model> CompileShipped(const std::string& name,
+                                                   const std::function<double(const v1::Body&)>& resolution_mm) {
+  return CompileScene(ReadShipped(name), resolution_mm);
 }
 
 // With one resolution for all generated bodies.
