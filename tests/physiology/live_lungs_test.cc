@@ -65,7 +65,7 @@ class LiveLungsTest : public testing::Test {
 
 // The reduction: few shapes beside the full solution, over the inside, relative to the root mean square displacement.
 TEST_F(LiveLungsTest, MovesAsTheFullSolutionWithinFivePerCent) {
-  const auto full = *physiology::BreathingLungs::Make(*subject_, {});
+  const auto full = *physiology::BreathingLungs::Make(*subject_);
   for (const char* preset : {"quiet", "deep", "palsy-right", "ventilator", "upright"}) {
     const std::vector<LungMotion> motions = full.Motions(Breath(preset));
     const std::vector<LungMoment> gained = Gained(preset);
@@ -129,7 +129,7 @@ TEST_F(LiveLungsTest, RestsInTheStateOfRest) {
 
 // The regions agree with those that `phrenic lungs` averages over points of the full solution.
 TEST_F(LiveLungsTest, HasTheRegionsOfTheFullSolution) {
-  const auto full = *physiology::BreathingLungs::Make(*subject_, {});
+  const auto full = *physiology::BreathingLungs::Make(*subject_);
   const auto readings = full.Readings(full.Motions(Breath("quiet")));
   const std::vector<LungMoment> gained = Gained("quiet");
   for (const size_t lung : {kRightLung, kLeftLung}) {
