@@ -25,6 +25,8 @@ Legendre PolynomialsAt(double t) {
   return p;
 }
 
+constexpr int kAlongNormal = 3;  // in place of an axis
+
 // A component of a neighbour's displacement, as a product of polynomials.
 struct Candidate {
   LungNeighbour of;
@@ -48,6 +50,9 @@ std::vector<Candidate> AllCandidates() {
   AddCandidates(LungNeighbour::kDiaphragm, 2, kDegreeOfVertical, false, candidates);
   for (int axis = 0; axis < 3; ++axis) AddCandidates(LungNeighbour::kWall, axis, kDegreeOfWall, true, candidates);
   AddCandidates(LungNeighbour::kMediastinum, 0, kDegreeOfMediastinum, false, candidates);
+  for (const LungNeighbour of : {LungNeighbour::kDiaphragm, LungNeighbour::kWall, LungNeighbour::kMediastinum}) {
+    candidates.push_back({of, kAlongNormal, {0, 0, 0}});
+  }
   for (int degree = 0; degree <= kDegreeOfRoot; ++degree) {
     candidates.push_back({LungNeighbour::kMediastinum, 2, {0, 0, degree}, true});
   }
@@ -66,7 +71,9 @@ Eigen::MatrixXd Displacements(const LungTissue& tissue, const std::vector<LungNe
       const auto& [of, axis, degrees, at_root_alone] = candidates[static_cast<size_t>(k)];
       if (of != neighbours[static_cast<size_t>(p)]) continue;
       if (at_root_alone && !tissue.rooted()[static_cast<size_t>(p)]) continue;
-      d(3 * p + axis, k) = along[0][degrees.x()] * along[1][degrees.y()] * along[2][degrees.z()];
+      const double value = along[0][degrees.x()] * along[1][degrees.y()] * along[2][degrees.z()];
+      if (axis == kAlongNormal) d.col(k).segment<3>(3 * p) = value * tissue.normals().col(p);
+      if (axis != kAlongNormal) d(3 * p + axis, k) = value;
     }
   }
   return d;

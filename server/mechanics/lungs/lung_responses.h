@@ -9,7 +9,8 @@
 // How the shapes are made. Of each neighbour, the displacement is written in Legendre polynomials over the lung's box:
 // of the diaphragm the vertical part to degree 5 and the horizontal one to degree 2 in x and y; of the wall all parts
 // to degree 3; of the mediastinum a sideways one to degree 1 in x and y and, at the root, the vertical one to degree 1
-// in z. These are 98 candidates, which P fits to g by area-weighted least squares. Of their responses, and that to the
+// in z; of each also a uniform one along the normal, so that the fit sweeps the volume that g does. These are 101
+// candidates, which P fits to g by area-weighted least squares. Of their responses, and that to the
 // pressure, under all weights, those combinations are kept that move the tissue most: the leading eigenvectors of the
 // Gram matrix, until what is left is below kLeftOut of the mean square, at most kMostShapes. What a weight's response
 // is in these shapes is again a least-squares fit.
@@ -43,7 +44,7 @@ struct TissueAtPoint {
 // Immutable, thread-safe.
 class LungResponses {
  public:
-  static constexpr int kMostShapes = 64;
+  static constexpr int kMostShapes = 96;
   static constexpr double kLeftOut = 1e-5;
 
   // Factorises the tissue with its free points, and solves for all candidates, under each of the weights: half a second
