@@ -35,7 +35,7 @@ struct LungsOptions {
   SceneOptions scene;
   std::vector<std::string> presets;  // empty: the scene's own parameters
   std::vector<std::string> settings;
-  bool glued = false, weightless = false, unfilled = false;  // for comparison
+  bool glued = false, weightless = false, unfilled = false, rootless = false, bound_margin = false;  // for comparison
   double edge_mm = LungElasticity().edge * kMillimetresAMetre, spacing_mm = 4;
   std::string data_dir, field;  // empty field: no file
 };
@@ -153,9 +153,10 @@ absl::Status WriteField(const std::vector<LungMotion>& motions, const LungsOptio
 // The lungs of a person's scene, which boundary modes move: their breath is known without running it.
 absl::StatusOr<std::vector<LungsOfBreath>> ReadModes(const Model& model, const v1::Parameters& settings,
                                                      const LungsOptions& options) {
-  if (options.glued || options.weightless || options.unfilled) {
+  if (options.glued || options.weightless || options.unfilled || options.rootless || options.bound_margin) {
     return absl::FailedPreconditionError(
-        "the motion of these lungs' walls is prescribed: --glued, --weightless and --unfilled change nothing");
+        "the motion of these lungs' walls is prescribed: --glued, --weightless, --unfilled, --rootless and "
+        "--bound-margin change nothing");
   }
   std::vector<LungsOfBreath> breaths;
   const auto presets = options.presets.empty() ? std::vector<std::string>{""} : options.presets;
@@ -184,9 +185,13 @@ absl::StatusOr<std::vector<LungsOfBreath>> ReadBreaths(const Context& context, c
   if (LungModes::Find(**model) != nullptr) return ReadModes(**model, *settings, options);
   const auto subject = physiology::Subject::Of(**model);
   if (!subject.ok()) return subject.status();
-  LungElasticity elasticity = {.edge = options.edge_mm / kMillimetresAMetre};
+  LungElasticity elasticity = physiology::DrivenLungs();
+  elasticity.edge = options.edge_mm / kMillimetresAMetre;
   if (options.glued) elasticity.tangential = elasticity.contact;
-  const physiology::LungCauses causes = {.weight = !options.weightless, .space = !options.unfilled};
+  const physiology::LungCauses causes = {.weight = !options.weightless,
+                                         .space = !options.unfilled,
+                                         .root = !options.rootless,
+                                         .margin = !options.bound_margin};
   const auto lungs = physiology::BreathingLungs::Make(**subject, elasticity, causes);
   if (!lungs.ok()) return lungs.status();
   std::vector<LungsOfBreath> breaths;
@@ -290,6 +295,11 @@ CommandFunction SetUpLungs(CLI::App& command) {
   command.add_flag(
       "--unfilled", options->unfilled,
       "let the lungs follow what touches them at rest alone, for comparison: they fill the space that opens");
+  command.add_flag(
+      "--rootless", options->rootless,
+      "let the lungs slide at their root too, for comparison: bronchi and vessels bind it to the mediastinum");
+  command.add_flag("--bound-margin", options->bound_margin,
+                   "bind the lungs' margin to the diaphragm, for comparison: it slides into the recess that opens");
   AddDataFolder(command, options->data_dir);
   return Bind(&Lungs, options);
 }

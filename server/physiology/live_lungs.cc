@@ -33,12 +33,9 @@ size_t IndexOf(v1::Posture posture) {
 }  // namespace
 
 absl::Status LiveLungs::AddDriven(const Parts& parts, const StopCheck& stop) {
-  std::vector<LungTissue> tissues;
-  for (const int body : parts.lungs) {
-    absl::StatusOr<LungTissue> tissue = LungTissue::Make(model_.bodies[static_cast<size_t>(body)].mesh, {}, stop);
-    if (!tissue.ok()) return tissue.status();
-    tissues.push_back(*std::move(tissue));
-  }
+  const absl::StatusOr<std::vector<LungTissue>> made = MakeLungs(model_, parts, DrivenLungs(), {}, stop);
+  if (!made.ok()) return made.status();
+  const std::vector<LungTissue>& tissues = *made;
   drive_.emplace(model_, parts, tissues);
   std::vector<LungWeight> weights;
   weights.reserve(kPostures.size());

@@ -75,16 +75,11 @@ absl::StatusOr<BreathingLungs> BreathingLungs::Make(const Subject& subject, cons
         "tissue");
   }
   std::vector<std::string> names;
-  std::vector<LungTissue> tissues;
-  for (const int b : parts.lungs) {
-    const BodyModel& body = subject.model.bodies[b];
-    absl::StatusOr<LungTissue> tissue = LungTissue::Make(body.mesh, elasticity);
-    if (!tissue.ok()) return tissue.status();
-    names.push_back(body.name);
-    tissues.push_back(*std::move(tissue));
-  }
-  LungDrive drive(subject.model, parts, tissues, causes);
-  return BreathingLungs(std::move(names), std::move(tissues), std::move(drive));
+  for (const int b : parts.lungs) names.push_back(subject.model.bodies[static_cast<size_t>(b)].name);
+  absl::StatusOr<std::vector<LungTissue>> tissues = MakeLungs(subject.model, parts, elasticity, causes);
+  if (!tissues.ok()) return tissues.status();
+  LungDrive drive(subject.model, parts, *tissues, causes);
+  return BreathingLungs(std::move(names), *std::move(tissues), std::move(drive));
 }
 
 std::vector<LungMotion> BreathingLungs::Motions(const Recording& breath) const {
@@ -148,7 +143,7 @@ absl::StatusOr<std::vector<LungMotion>> MotionsOfModes(const Model& model, const
 }
 
 LoweredPoints LoweredInBreath(const Recording& breath) {
-  const auto lungs = BreathingLungs::Make(*breath.subject, {});
+  const auto lungs = BreathingLungs::Make(*breath.subject);
   if (!lungs.ok()) return LoweredLungs(breath.subject->model, breath.subject->parts, breath.base, breath.peak);
   LoweredPoints lowered;
   for (const LungMotion& motion : lungs->Motions(breath)) {

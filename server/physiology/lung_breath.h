@@ -31,7 +31,7 @@ struct LungReading {
 class BreathingLungs {
  public:
   // FAILED_PRECONDITION if the scene lacks lungs, a simulated diaphragm or an inner wall; as LungTissue::Make.
-  static absl::StatusOr<BreathingLungs> Make(const Subject& subject, const LungElasticity& elasticity,
+  static absl::StatusOr<BreathingLungs> Make(const Subject& subject, const LungElasticity& elasticity = DrivenLungs(),
                                              LungCauses causes = {});
 
   // Returns the motion of each lung in a breath (lung_drive.h). Factorises each lung.

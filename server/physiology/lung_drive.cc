@@ -33,6 +33,31 @@ Mediastinum MakeMediastinum(const Mesh& sheet, const Mesh& wall, const std::vect
 
 }  // namespace
 
+LungElasticity DrivenLungs() { return {.poisson = 0.42, .contact = 2000}; }
+
+absl::StatusOr<std::vector<LungTissue>> MakeLungs(const Model& model, const Parts& parts,
+                                                  const LungElasticity& elasticity, LungCauses causes,
+                                                  const StopCheck& stop) {
+  std::array<LungRoot, 2> roots = {{{-1, {}}, {1, {}}}};
+  const auto root_of = [&](const BodyModel& body) -> LungRoot& {
+    return roots[body.anatomy.side() == v1::SIDE_LEFT ? 1 : 0];
+  };
+  for (const int b : parts.lungs) {
+    const BodyModel& body = model.bodies[static_cast<size_t>(b)];
+    for (const auto& vertex : body.mesh.vertices.colwise()) root_of(body).box.extend(Eigen::Vector3d(vertex));
+  }
+  std::vector<LungTissue> tissues;
+  for (const int b : parts.lungs) {
+    const BodyModel& body = model.bodies[static_cast<size_t>(b)];
+    LungElasticity rooted = elasticity;
+    if (causes.root) rooted.root = root_of(body);
+    absl::StatusOr<LungTissue> tissue = LungTissue::Make(body.mesh, rooted, stop);
+    if (!tissue.ok()) return tissue.status();
+    tissues.push_back(*std::move(tissue));
+  }
+  return tissues;
+}
+
 double FollowsSurroundings(v1::Side side, const v1::Parameters& parameters) {
   return 1 - (side == v1::SIDE_LEFT ? parameters.pneumothorax_left() : parameters.pneumothorax_right());
 }
@@ -41,7 +66,7 @@ LungDrive::LungDrive(const Model& model, const Parts& parts, const std::vector<L
     : model_(model), parts_(parts), causes_(causes) {
   for (size_t i = 0; i < tissues.size(); ++i) {
     const BodyModel& body = model.bodies[static_cast<size_t>(parts.lungs[i])];
-    surroundings_.emplace_back(model, parts.muscle, parts.wall, tissues[i]);
+    surroundings_.emplace_back(model, parts.muscle, parts.wall, tissues[i], causes.margin);
     sides_.push_back(body.anatomy.side() == v1::SIDE_LEFT ? 1 : 0);
     beside_[sides_.back()] += surroundings_.back().BesideMediastinum();
     volume_ += SignedVolume(body.mesh.vertices, body.mesh.triangles);
@@ -72,7 +97,8 @@ LungDrive::Moment LungDrive::At(const State& state, const v1::Parameters& parame
   for (size_t i = 0; i < surroundings_.size(); ++i) {
     const size_t side = sides_[i];
     const double narrowing = beside_[side] > 0 ? swept[side] / beside_[side] : 0;
-    moment.displacement.push_back(follows[side] * surroundings_[i].Displacement(state, sheet, wall, narrowing));
+    const MediastinalMotion mediastinum = mediastinum_->Stretched(sheet, narrowing);
+    moment.displacement.push_back(follows[side] * surroundings_[i].Displacement(state, sheet, wall, mediastinum));
   }
   return moment;
 }

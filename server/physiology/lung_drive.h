@@ -2,7 +2,7 @@
 //
 // A lung fills its side of the thorax, also where it cannot follow what touched it at rest: at its margin, which slides
 // into the recess that the diaphragm opens. So the tissue follows its surroundings under a pressure p on its whole
-// surface, one for each side, at which the lungs of the side gain the space s that opens for them,
+// free surface, one for each side, at which the lungs of the side gain the space s that opens for them,
 //   integral n . u dS = s,  u = u_surroundings + p u_pressure.
 // p is what the pleural pressure falls by, over Young's modulus, beside what the springs of the contact bear.
 #ifndef PHRENIC_SERVER_PHYSIOLOGY_LUNG_DRIVE_H_
@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "absl/status/statusor.h"
 #include "server/mechanics/lungs/lung_surroundings.h"
 #include "server/mechanics/lungs/lung_weight.h"
 #include "server/physiology/mediastinum.h"
@@ -23,7 +24,20 @@ namespace phrenic::physiology {
 struct LungCauses {
   bool weight = true;  // the tissue has a weight
   bool space = true;   // the lungs fill the space that opens for them
+  bool root = true;    // the root binds them to the mediastinum
+  bool margin = true;  // their margin is free to slide into the recess
 };
+
+// Returns the elasticity of lungs that a breath drives. Poisson's ratio is 0.42: small changes about an inflation at
+// the pressure P have a bulk modulus of about 4 P and a shear modulus of 0.7 P (Lai-Fook, Wilson, Hyatt and Rodarte, J
+// Appl Physiol 1976;40:508). The contact is a penalty: four times as stiff as that of fits to people's landmarks, which
+// tell neither number, so that the tissue is where its surroundings are.
+LungElasticity DrivenLungs();
+
+// Makes the tissue of each lung of `parts`, of one side with one root. As LungTissue::Make.
+absl::StatusOr<std::vector<LungTissue>> MakeLungs(const Model& model, const Parts& parts,
+                                                  const LungElasticity& elasticity, LungCauses causes = {},
+                                                  const StopCheck& stop = {});
 
 // Refers to the model. Immutable, thread-safe.
 class LungDrive {

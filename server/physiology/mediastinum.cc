@@ -1,6 +1,7 @@
 #include "server/physiology/mediastinum.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "server/mesh/nearest.h"
 #include "server/mesh/topology.h"
@@ -29,6 +30,24 @@ Mediastinum::Mediastinum(const Mesh& sheet, const Mesh& wall, const Points& boun
   };
   add(sheet, false, sheet_);
   add(wall, true, wall_);
+  bottom_ = HeightOfSheet(sheet.vertices);
+  top_ = wall.vertices.row(2).maxCoeff();
+}
+
+double Mediastinum::HeightOfSheet(const ConstPoints& sheet) const {
+  double area = 0, moment = 0;
+  for (const std::vector<Eigen::Vector3i>& side : sheet_.of_side) {
+    for (const Eigen::Vector3i& corners : side) {
+      const double across = std::abs(TurnedArea(sheet_.rest(Eigen::all, corners)).z());
+      area += across;
+      moment += across * sheet(2, corners).mean();
+    }
+  }
+  return area > 0 ? moment / area : 0;
+}
+
+MediastinalMotion Mediastinum::Stretched(const ConstPoints& sheet, double narrowing) const {
+  return {narrowing, bottom_ - HeightOfSheet(sheet), bottom_, top_};
 }
 
 std::array<double, 2> Mediastinum::SweptBy(const Faces& faces, const ConstPoints& now) {

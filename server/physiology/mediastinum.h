@@ -9,6 +9,7 @@
 #include <array>
 #include <vector>
 
+#include "server/mechanics/lungs/lung_surroundings.h"
 #include "server/mesh/mesh.h"
 
 namespace phrenic::physiology {
@@ -23,6 +24,9 @@ class Mediastinum {
 
   // Returns the volume that these triangles have swept from rest, right and left of x = 0 [m^3].
   std::array<double, 2> Swept(const ConstPoints& sheet, const ConstPoints& wall) const;
+  // Returns how it moves: its lower end by the mean descent of the sheet below it, over the area seen from above, its
+  // upper end, at the top of the wall, not; `narrowing` as given.
+  MediastinalMotion Stretched(const ConstPoints& sheet, double narrowing) const;
 
  private:
   // Triangles of a surface, by side; `outwards` is 1 if their normals point out of the thorax, else -1.
@@ -31,9 +35,12 @@ class Mediastinum {
     std::array<std::vector<Eigen::Vector3i>, 2> of_side;
     double outwards;
   };
+  // Returns the mean of z of the triangles of the sheet over their area seen from above at rest [m].
+  double HeightOfSheet(const ConstPoints& sheet) const;
   static std::array<double, 2> SweptBy(const Faces& faces, const ConstPoints& now);
 
   Faces sheet_, wall_;
+  double bottom_, top_;  // z of its ends [m]
 };
 
 }  // namespace phrenic::physiology

@@ -71,5 +71,18 @@ TEST(Mediastinum, GainsNothingAtRestOrSideways) {
   for (const double swept : Middle().Swept(sheet.vertices, outwards)) EXPECT_EQ(swept, 0);
 }
 
+// Its lower end follows the sheet below it alone.
+TEST(Mediastinum, IsStretchedByTheSheetBelowIt) {
+  const Mesh sheet = FlatSheet();
+  Points lowered = sheet.vertices;
+  for (auto vertex : lowered.colwise()) vertex.z() -= std::abs(vertex.x()) < 0.055 ? 0.02 : 0.1;
+  const MediastinalMotion motion = Middle().Stretched(lowered, 0.25), rest = Middle().Stretched(sheet.vertices, 0);
+  EXPECT_NEAR(motion.descent, 0.02, 1e-12);
+  EXPECT_EQ(motion.narrowing, 0.25);
+  EXPECT_NEAR(motion.bottom, 0, 1e-12);
+  EXPECT_NEAR(motion.top, -0.1, 1e-12);
+  EXPECT_EQ(rest.descent, 0);
+}
+
 }  // namespace
 }  // namespace phrenic

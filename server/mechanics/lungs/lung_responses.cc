@@ -14,6 +14,7 @@ constexpr int kDegreeOfVertical = 5;     // of the diaphragm's vertical displace
 constexpr int kDegreeOfHorizontal = 2;   // of its horizontal one
 constexpr int kDegreeOfWall = 3;         // of each part of the wall's, in x, y and z
 constexpr int kDegreeOfMediastinum = 1;  // of its sideways one, in x and y
+constexpr int kDegreeOfRoot = 1;         // of its vertical one, in z
 
 using Legendre = std::array<double, kMostDegree + 1>;
 
@@ -24,11 +25,14 @@ Legendre PolynomialsAt(double t) {
   return p;
 }
 
+constexpr int kAlongNormal = 3;  // in place of an axis
+
 // A component of a neighbour's displacement, as a product of polynomials.
 struct Candidate {
   LungNeighbour of;
   int axis;
   Eigen::Vector3i degrees;
+  bool at_root_alone = false;
 };
 
 void AddCandidates(LungNeighbour of, int axis, int degree, bool with_z, std::vector<Candidate>& candidates) {
@@ -46,28 +50,36 @@ std::vector<Candidate> AllCandidates() {
   AddCandidates(LungNeighbour::kDiaphragm, 2, kDegreeOfVertical, false, candidates);
   for (int axis = 0; axis < 3; ++axis) AddCandidates(LungNeighbour::kWall, axis, kDegreeOfWall, true, candidates);
   AddCandidates(LungNeighbour::kMediastinum, 0, kDegreeOfMediastinum, false, candidates);
+  for (const LungNeighbour of : {LungNeighbour::kDiaphragm, LungNeighbour::kWall, LungNeighbour::kMediastinum}) {
+    candidates.push_back({of, kAlongNormal, {0, 0, 0}});
+  }
+  for (int degree = 0; degree <= kDegreeOfRoot; ++degree) {
+    candidates.push_back({LungNeighbour::kMediastinum, 2, {0, 0, degree}, true});
+  }
   return candidates;
 }
 
-// Returns the normal displacement of each boundary point (points x candidates) for each candidate.
-Eigen::MatrixXd NormalParts(const LungTissue& tissue, const std::vector<LungNeighbour>& neighbours) {
+// Returns the displacement of each boundary point (row 3 point + axis) for each candidate.
+Eigen::MatrixXd Displacements(const LungTissue& tissue, const std::vector<LungNeighbour>& neighbours) {
   const std::vector<Candidate> candidates = AllCandidates();
   const Eigen::AlignedBox3d& box = tissue.box();
-  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(tissue.points().cols(), static_cast<Eigen::Index>(candidates.size()));
-  for (Eigen::Index p = 0; p < g.rows(); ++p) {
+  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(3 * tissue.points().cols(), static_cast<Eigen::Index>(candidates.size()));
+  for (Eigen::Index p = 0; p < tissue.points().cols(); ++p) {
     const Eigen::Vector3d at = (2 * tissue.points().col(p) - box.min() - box.max()).cwiseQuotient(box.sizes());
     const std::array<Legendre, 3> along = {PolynomialsAt(at.x()), PolynomialsAt(at.y()), PolynomialsAt(at.z())};
-    for (Eigen::Index k = 0; k < g.cols(); ++k) {
-      const auto& [of, axis, degrees] = candidates[static_cast<size_t>(k)];
+    for (Eigen::Index k = 0; k < d.cols(); ++k) {
+      const auto& [of, axis, degrees, at_root_alone] = candidates[static_cast<size_t>(k)];
       if (of != neighbours[static_cast<size_t>(p)]) continue;
+      if (at_root_alone && !tissue.rooted()[static_cast<size_t>(p)]) continue;
       const double value = along[0][degrees.x()] * along[1][degrees.y()] * along[2][degrees.z()];
-      g(p, k) = tissue.normals()(axis, p) * value;
+      if (axis == kAlongNormal) d.col(k).segment<3>(3 * p) = value * tissue.normals().col(p);
+      if (axis != kAlongNormal) d(3 * p + axis, k) = value;
     }
   }
-  return g;
+  return d;
 }
 
-// Returns the matrix (candidates x points) that fits the candidates to normal displacements by least squares.
+// Returns the matrix (candidates x rows) that fits the candidates to displacements by weighted least squares.
 Eigen::MatrixXd LeastSquares(const Eigen::MatrixXd& g, const Eigen::VectorXd& areas) {
   const Eigen::MatrixXd weighted = (areas.asDiagonal() * g).transpose();
   Eigen::MatrixXd normal = weighted * g;
@@ -111,7 +123,9 @@ double TissueAtPoint::LargestStrain() const {
 LungResponses::LungResponses(const LungTissue& tissue, const std::vector<LungNeighbour>& neighbours)
     : grid_(tissue.grid()) {
   for (size_t p = 0; p < neighbours.size(); ++p) {
-    if (neighbours[p] != LungNeighbour::kNone) touching_.push_back(static_cast<Eigen::Index>(p));
+    if (neighbours[p] == LungNeighbour::kNone) continue;
+    touching_.push_back(static_cast<Eigen::Index>(p));
+    if (tissue.rooted()[p]) rooted_.push_back(static_cast<Eigen::Index>(p));
   }
   normals_ = tissue.normals()(Eigen::all, touching_);
 }
@@ -133,25 +147,42 @@ absl::StatusOr<LungResponses> LungResponses::Make(const LungTissue& tissue,
   std::vector<bool> free;
   free.reserve(neighbours.size());
   for (const LungNeighbour neighbour : neighbours) free.push_back(neighbour == LungNeighbour::kNone);
-  const Eigen::MatrixXd g = NormalParts(tissue, neighbours);
-  Eigen::MatrixXd with_pressure(g.rows(), g.cols() + 1);
-  with_pressure << g, Eigen::VectorXd::Ones(g.rows());
+  const Eigen::MatrixXd candidates = Displacements(tissue, neighbours);
+  Eigen::MatrixXd with_pressure = Eigen::MatrixXd::Zero(candidates.rows(), candidates.cols() + 1);
+  with_pressure.leftCols(candidates.cols()) = candidates;
+  for (Eigen::Index p = 0; p < tissue.points().cols(); ++p) {
+    if (free[static_cast<size_t>(p)]) with_pressure.col(candidates.cols()).segment<3>(3 * p) = tissue.normals().col(p);
+  }
   std::vector<Eigen::MatrixXd> under_weights;
   for (const LungWeight& weight : weights) {
     absl::StatusOr<Eigen::MatrixXd> responses = tissue.Under(weight).SolveEach(with_pressure, free, stop);
     if (!responses.ok()) return responses.status();
     under_weights.push_back(*std::move(responses));
   }
-  lung.Reduce(under_weights, LeastSquares(g, tissue.areas())(Eigen::all, lung.touching_));
+  lung.Reduce(under_weights, lung.FitOf(candidates, tissue.areas()));
   return lung;
 }
 
 Eigen::VectorXd LungResponses::Amplitudes(const ConstPoints& displacement, size_t weight) const {
-  Eigen::VectorXd g(static_cast<Eigen::Index>(touching_.size()));
-  for (Eigen::Index i = 0; i < g.size(); ++i) {
+  return responses_[weight].projection * Followed(displacement);
+}
+
+Eigen::VectorXd LungResponses::Followed(const ConstPoints& displacement) const {
+  const auto touching = static_cast<Eigen::Index>(touching_.size()), rooted = static_cast<Eigen::Index>(rooted_.size());
+  Eigen::VectorXd g(touching + rooted);
+  for (Eigen::Index i = 0; i < touching; ++i) {
     g[i] = normals_.col(i).dot(displacement.col(touching_[static_cast<size_t>(i)]));
   }
-  return responses_[weight].projection * g;
+  for (Eigen::Index i = 0; i < rooted; ++i) g[touching + i] = displacement(2, rooted_[static_cast<size_t>(i)]);
+  return g;
+}
+
+Eigen::MatrixXd LungResponses::FitOf(const Eigen::MatrixXd& candidates, const Eigen::VectorXd& areas) const {
+  Eigen::VectorXd weights(static_cast<Eigen::Index>(touching_.size() + rooted_.size()));
+  weights << areas(touching_), areas(rooted_);
+  Eigen::MatrixXd g(weights.size(), candidates.cols());
+  for (Eigen::Index k = 0; k < g.cols(); ++k) g.col(k) = Followed(candidates.col(k).reshaped(3, areas.size()));
+  return LeastSquares(g, weights);
 }
 
 Points LungResponses::Nodes(const Eigen::VectorXd& amplitudes) const {

@@ -1,17 +1,19 @@
 // The motion of lung tissue as a sum of few shapes, so that the whole interior of a lung follows from a state in
 // microseconds instead of milliseconds:
 //   u(x) = sum_k q_k u_k(x),   q = P g + p r   [m],
-// with g the normal displacement of what touches each point of the surface [m], p a pressure on the whole surface over
-// the contact's stiffness [m], P and r a constant matrix and vector, and u_k the responses of the elastic, sliding
-// tissue (lung_tissue.h) to smooth motions of the surroundings. P and r are given for each of several weights of the
-// lung.
+// with g the normal displacement of what touches each point of the surface, and the descent of the root's points [m], p
+// a pressure on the free surface over the contact's stiffness [m], P and r a constant matrix and vector, and u_k the
+// responses of the elastic, sliding tissue (lung_tissue.h) to smooth motions of the surroundings. P and r are given for
+// each of several weights of the lung.
 //
 // How the shapes are made. Of each neighbour, the displacement is written in Legendre polynomials over the lung's box:
 // of the diaphragm the vertical part to degree 5 and the horizontal one to degree 2 in x and y; of the wall all parts
-// to degree 3; of the mediastinum a sideways one to degree 1 in x and y. These are 96 candidates, which P fits to g by
-// area-weighted least squares. Of their responses, and that to the pressure, under all weights, those combinations are
-// kept that move the tissue most: the leading eigenvectors of the Gram matrix, until what is left is below kLeftOut of
-// the mean square, at most kMostShapes. What a weight's response is in these shapes is again a least-squares fit.
+// to degree 3; of the mediastinum a sideways one to degree 1 in x and y and, at the root, the vertical one to degree 1
+// in z; of each also a uniform one along the normal, so that the fit sweeps the volume that g does. These are 101
+// candidates, which P fits to g by area-weighted least squares. Of their responses, and that to the
+// pressure, under all weights, those combinations are kept that move the tissue most: the leading eigenvectors of the
+// Gram matrix, until what is left is below kLeftOut of the mean square, at most kMostShapes. What a weight's response
+// is in these shapes is again a least-squares fit.
 //
 // What is lost is what is not smooth: tests/physiology/live_lungs_test.cc states the error against the full solution.
 #ifndef PHRENIC_SERVER_MECHANICS_LUNGS_LUNG_RESPONSES_H_
@@ -42,7 +44,7 @@ struct TissueAtPoint {
 // Immutable, thread-safe.
 class LungResponses {
  public:
-  static constexpr int kMostShapes = 64;
+  static constexpr int kMostShapes = 96;
   static constexpr double kLeftOut = 1e-5;
 
   // Factorises the tissue with its free points, and solves for all candidates, under each of the weights: half a second
@@ -70,15 +72,20 @@ class LungResponses {
  private:
   // Under one weight.
   struct Response {
-    Eigen::MatrixXd projection;  // P: shapes x touching points
+    Eigen::MatrixXd projection;  // P: shapes x (touching, then rooted points)
     Eigen::VectorXd per_pressure;
   };
   LungResponses(const LungTissue& tissue, const std::vector<LungNeighbour>& neighbours);
+  // Returns g: what the amplitudes follow, of displacements of the surroundings (3 x points) [m].
+  Eigen::VectorXd Followed(const ConstPoints& displacement) const;
+  // Returns the matrix that fits the candidates (row 3 point + axis) to g.
+  Eigen::MatrixXd FitOf(const Eigen::MatrixXd& candidates, const Eigen::VectorXd& areas) const;
   void Reduce(const std::vector<Eigen::MatrixXd>& under_weights, const Eigen::MatrixXd& fit);
 
   BrickGrid grid_;
   std::vector<Eigen::Index> touching_;  // the boundary points that are not free
-  Points normals_;                      // of these
+  std::vector<Eigen::Index> rooted_;    // those of the root
+  Points normals_;                      // of the touching ones
   std::vector<Response> responses_;     // by the weights
   Eigen::MatrixXd shapes_;
 };

@@ -1,5 +1,6 @@
 #include "server/mechanics/lungs/lung_surroundings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -42,24 +43,27 @@ bool IsInCupola(const Eigen::Vector3d& point, double top_of_wall) { return point
 
 }  // namespace
 
-LungSurroundings::LungSurroundings(const Model& model, int sheet, int wall, const LungTissue& tissue)
-    : model_(model), bodies_{sheet, wall}, areas_(tissue.areas()), lateral_(tissue.points().row(0)) {
-  Bind(tissue, model.bodies[sheet].mesh, model.bodies[wall].mesh);
+LungSurroundings::LungSurroundings(const Model& model, int sheet, int wall, const LungTissue& tissue,
+                                   bool is_margin_free)
+    : model_(model), bodies_{sheet, wall}, areas_(tissue.areas()), points_(tissue.points()) {
+  Bind(tissue, model.bodies[sheet].mesh, model.bodies[wall].mesh, is_margin_free);
 }
 
-void LungSurroundings::Bind(const LungTissue& tissue, const Mesh& sheet, const Mesh& wall) {
+void LungSurroundings::Bind(const LungTissue& tissue, const Mesh& sheet, const Mesh& wall, bool is_margin_free) {
   const std::array<Surface, 2> surfaces = {Surface(sheet), Surface(wall)};
   const double side = tissue.box().center().x() > 0 ? 1 : -1, top_of_wall = wall.vertices.row(2).maxCoeff();
   for (Eigen::Index p = 0; p < tissue.points().cols(); ++p) {
     const Eigen::Vector3d point = tissue.points().col(p), normal = tissue.normals().col(p);
+    const bool rooted = tissue.rooted()[static_cast<size_t>(p)];
     std::array<SurfacePoint, 2> near = {surfaces[0].Facing(point, normal), surfaces[1].Facing(point, normal)};
     if (IsInCupola(point, top_of_wall)) near[1] = surfaces[1].tree.Nearest(wall.vertices, surfaces[1].boxes, point, 1);
     const size_t nearest = near[0].squared <= near[1].squared ? 0 : 1;
-    const bool touches = near[nearest].triangle >= 0, at_recess = nearest == 0 && surfaces[1].IsWithinReach(point);
-    if (touches && !at_recess) {
+    const bool touches = !rooted && near[nearest].triangle >= 0,
+               is_margin = is_margin_free && nearest == 0 && surfaces[1].IsWithinReach(point);
+    if (touches && !is_margin) {
       contacts_[nearest].push_back({p, surfaces[nearest].tree.triangle(near[nearest].triangle), near[nearest].weights});
       neighbours_.push_back(static_cast<LungNeighbour>(nearest));
-    } else if (!touches && -side * normal.x() > kInwards) {
+    } else if (!touches && (rooted || -side * normal.x() > kInwards)) {
       mediastinal_area_ += areas_[p] * std::abs(normal.x());
       beside_mediastinum_ -= areas_[p] * normal.x() * point.x();
       neighbours_.push_back(LungNeighbour::kMediastinum);
@@ -76,17 +80,17 @@ double LungSurroundings::MediastinalShift(const State& state) const {
   return 0;
 }
 
-Points LungSurroundings::Displacement(const State& state, double narrowing) const {
+Points LungSurroundings::Displacement(const State& state, const MediastinalMotion& mediastinum) const {
   std::array<Points, 2> placed;
   for (size_t of = 0; of < placed.size(); ++of) {
     placed[of].resize(3, model_.bodies[bodies_[of]].mesh.vertices.cols());
     PlaceBody(model_, state, bodies_[of], placed[of]);
   }
-  return Displacement(state, placed[0], placed[1], narrowing);
+  return Displacement(state, placed[0], placed[1], mediastinum);
 }
 
 Points LungSurroundings::Displacement(const State& state, const Points& sheet, const Points& wall,
-                                      double narrowing) const {
+                                      const MediastinalMotion& mediastinum) const {
   Points displacement = Points::Constant(3, areas_.size(), std::numeric_limits<double>::quiet_NaN());
   const std::array<const Points*, 2> placed = {&sheet, &wall};
   for (size_t of = 0; of < contacts_.size(); ++of) {
@@ -103,9 +107,15 @@ Points LungSurroundings::Displacement(const State& state, const Points& sheet, c
   const double sideways = MediastinalShift(state);
   for (Eigen::Index p = 0; p < areas_.size(); ++p) {
     if (neighbours_[p] != LungNeighbour::kMediastinum) continue;
-    displacement.col(p) = (sideways - narrowing * lateral_[p]) * Eigen::Vector3d::UnitX();
+    displacement.col(p) = MoveMediastinum(p, sideways, mediastinum);
   }
   return displacement;
+}
+
+Eigen::Vector3d LungSurroundings::MoveMediastinum(Eigen::Index point, double sideways,
+                                                  const MediastinalMotion& motion) const {
+  const double below_top = (motion.top - points_(2, point)) / (motion.top - motion.bottom);
+  return {sideways - motion.narrowing * points_(0, point), 0, -motion.descent * std::clamp(below_top, 0.0, 1.0)};
 }
 
 double LungSurroundings::Share(LungNeighbour neighbour) const {

@@ -94,6 +94,7 @@ LungTissue::LungTissue(const Mesh& surface, const LungElasticity& elasticity)
     areas_[t] = area.norm();
     normals_.col(t) = area.stableNormalized();
     places_.push_back(grid_.Locate(points_.col(t)));
+    rooted_.push_back(elasticity.root.Holds(points_.col(t), normals_.col(t)));
   }
   for (const auto& vertex : surface.vertices.colwise()) box_.extend(vertex);
 }
@@ -117,7 +118,7 @@ bool LungTissue::Contains(const Eigen::Vector3d& point) const {
 
 Eigen::Matrix3d LungTissue::SpringOf(Eigen::Index point) const {
   const Eigen::Matrix3d along_normal = normals_.col(point) * normals_.col(point).transpose();
-  const double kt = elasticity_.tangential;
+  const double kt = rooted_[static_cast<size_t>(point)] ? elasticity_.contact : elasticity_.tangential;
   return areas_[point] * ((elasticity_.contact - kt) * along_normal + kt * Eigen::Matrix3d::Identity());
 }
 
@@ -188,17 +189,21 @@ PressedLung LungTissue::SolvePressed(const ConstPoints& displacement) const {
   const auto [free, held] = Held(displacement);
   Eigen::MatrixXd forces(3 * grid_.nodes().cols(), 2);
   forces.col(0) = Forces(held);
-  forces.col(1) = Forces(normals_) / elasticity_.contact;  // of springs that are pulled along the normal
+  Points pulled = normals_;  // springs along the normal
+  for (size_t p = 0; p < free.size(); ++p) {
+    if (!free[p]) pulled.col(static_cast<Eigen::Index>(p)).setZero();
+  }
+  forces.col(1) = Forces(pulled) / elasticity_.contact;
   const Eigen::MatrixXd nodes = FactorsWith(free, {})->Solve(forces);
   return {nodes.col(0).reshaped(3, grid_.nodes().cols()), nodes.col(1).reshaped(3, grid_.nodes().cols())};
 }
 
-absl::StatusOr<Eigen::MatrixXd> LungTissue::SolveEach(const Eigen::MatrixXd& g, const std::vector<bool>& free,
-                                                      const StopCheck& stop) const {
-  Eigen::MatrixXd forces(3 * grid_.nodes().cols(), g.cols());
-  for (Eigen::Index c = 0; c < g.cols(); ++c) {
+absl::StatusOr<Eigen::MatrixXd> LungTissue::SolveEach(const Eigen::MatrixXd& displacements,
+                                                      const std::vector<bool>& free, const StopCheck& stop) const {
+  Eigen::MatrixXd forces(3 * grid_.nodes().cols(), displacements.cols());
+  for (Eigen::Index c = 0; c < displacements.cols(); ++c) {
     if (stop.Stopped()) return stop.status();
-    forces.col(c) = Forces(normals_ * g.col(c).asDiagonal());
+    forces.col(c) = Forces(displacements.col(c).reshaped(3, points_.cols()));
   }
   const std::shared_ptr<const LayeredCholesky> factors = FactorsWith(free, stop);
   if (stop.Stopped()) return stop.status();

@@ -2,7 +2,8 @@
 // the displacement u of the tissue [m] minimises
 //   E = 1/2 integral sigma(u) : eps(u) dV + 1/2 integral k (n . u - g)^2 dS   [J],
 // with linear isotropic elasticity and n the outward normal of the surface. The pleura transmits no shear: nothing acts
-// along the surface. The result depends on k/E and Poisson's ratio only, not on Young's modulus E. The tissue is
+// along the surface, but at the root (lung_root.h), where the tissue is glued: k (u - d)^2 with d the displacement of
+// what holds it. The result depends on k/E and Poisson's ratio only, not on Young's modulus E. The tissue is
 // homogeneous unless it has a weight (lung_weight.h), which makes E that times the modulus m; k keeps to E at the
 // middle.
 //
@@ -22,6 +23,7 @@
 #include "absl/status/statusor.h"
 #include "server/mechanics/lungs/brick_grid.h"
 #include "server/mechanics/lungs/layered_cholesky.h"
+#include "server/mechanics/lungs/lung_root.h"
 #include "server/mechanics/lungs/lung_weight.h"
 #include "server/mechanics/stop_check.h"
 #include "server/mesh/mesh.h"
@@ -34,12 +36,13 @@ struct LungElasticity {
   double contact = 500;   // k/E, stiffness along the normal per area and modulus [1/m]
   double tangential = 0;  // the same along the surface [1/m]; as large as `contact`: glued
   LungWeight weight = {};
+  LungRoot root = {};  // where it is glued
 };
 
 // What moves a lung, as displacements of the grid's nodes (3 x nodes).
 struct PressedLung {
   Points followed;  // by the surroundings [m]
-  Points pressed;   // by a pressure of one Young's modulus outwards on the whole surface [m]
+  Points pressed;   // by a pressure of one Young's modulus outwards on the free surface [m]
 };
 
 // Checks that a surface can be a lung of bricks with this edge [m]: INVALID_ARGUMENT if it is not closed, does not face
@@ -64,6 +67,8 @@ class LungTissue {
   const Points& points() const { return points_; }
   const Points& normals() const { return normals_; }
   const Eigen::VectorXd& areas() const { return areas_; }
+  // True for the boundary points of the root.
+  const std::vector<bool>& rooted() const { return rooted_; }
 
   const Mesh& surface() const { return surface_; }
   const BrickGrid& grid() const { return grid_; }
@@ -77,12 +82,13 @@ class LungTissue {
   // The same for displacements of the surroundings at the boundary points (3 x points) [m], whose part along the
   // surface acts through the tangential stiffness. The surface is free at columns with NaN.
   Points SolveVectors(const ConstPoints& displacement) const;
-  // The same, and the response to a pressure: u + p v, v the second one, is the displacement under a pressure p [E].
+  // The same, and the response to a pressure on the free surface: u + p v, v the second one, is the displacement under
+  // a pressure p [E]. What touches the rest stays where it is, so that a pressure moves nothing there.
   PressedLung SolvePressed(const ConstPoints& displacement) const;
-  // Returns the displacement of the nodes (3 nodes x columns) for each column of normal displacements g (points x
-  // columns); the surface is free at the points that `free` marks, where g acts as the pressure k g. Costs a
-  // factorisation if it marks any. The status of `stop`.
-  absl::StatusOr<Eigen::MatrixXd> SolveEach(const Eigen::MatrixXd& g, const std::vector<bool>& free,
+  // Returns the displacement of the nodes (3 nodes x columns) for each column of displacements of the surroundings (row
+  // 3 point + axis) [m]; the surface is free at the points that `free` marks, where they act as the pressure k n . d.
+  // Costs a factorisation if it marks any. The status of `stop`.
+  absl::StatusOr<Eigen::MatrixXd> SolveEach(const Eigen::MatrixXd& displacements, const std::vector<bool>& free,
                                             const StopCheck& stop = {}) const;
   // Returns the displacement u of the nodes [m] that minimises E + w/2 sum |u(x_i) - r_i|^2 for surroundings at rest:
   // the smallest deformation through the vectors r (3 x n) [m] at the points x (3 x n) [m], per modulus; `weight` w
@@ -115,6 +121,7 @@ class LungTissue {
   Mesh surface_;
   Points points_, normals_;
   Eigen::VectorXd areas_;
+  std::vector<bool> rooted_;
   Eigen::AlignedBox3d box_;
   BrickGrid grid_;
   std::vector<BrickGrid::Place> places_;            // of the boundary points

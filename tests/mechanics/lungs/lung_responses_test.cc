@@ -68,6 +68,25 @@ TEST_F(LungResponsesTest, MovesAsTheFullSolutionUnderEachWeight) {
             0.03 * lung.Amplitudes(Breath(), 0).norm());
 }
 
+// The root's descent, which acts along the surface, beside what acts along the normal.
+TEST_F(LungResponsesTest, FollowsTheRootAsTheFullSolution) {
+  LungElasticity elasticity = {.edge = 0.02};
+  elasticity.root = {1, tissue_->box()};
+  const LungTissue tissue = *LungTissue::Make(tissue_->surface(), elasticity);
+  std::vector<LungNeighbour> neighbours = neighbours_;
+  Points displacement = Breath();
+  for (size_t p = 0; p < neighbours.size(); ++p) {
+    const auto at = static_cast<Eigen::Index>(p);
+    if (!tissue.rooted()[p]) continue;
+    neighbours[p] = LungNeighbour::kMediastinum;
+    displacement.col(at) << 0.001, 0, -0.004 - 0.02 * (tissue.box().center().z() - tissue.points()(2, at));
+  }
+  const LungResponses lung = *LungResponses::Make(tissue, neighbours, {LungWeight()});
+  const Points full = tissue.SolveVectors(displacement), reduced = lung.Nodes(lung.Amplitudes(displacement));
+  EXPECT_LT((reduced - full).norm(), 0.03 * full.norm());
+  EXPECT_GT((tissue_->SolveVectors(displacement) - full).norm(), 0.1 * full.norm()) << "without the root";
+}
+
 TEST_F(LungResponsesTest, RestsWhereNothingMoves) {
   const Eigen::VectorXd amplitudes = lung_->Amplitudes(Points::Zero(3, tissue_->points().cols()));
   EXPECT_EQ(amplitudes, Eigen::VectorXd::Zero(amplitudes.size()));

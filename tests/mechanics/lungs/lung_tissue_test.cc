@@ -168,6 +168,43 @@ TEST(LungTissue, ExpandsUniformlyUnderAPressure) {
   EXPECT_LT(lung.followed.cwiseAbs().maxCoeff(), 1e-12);
 }
 
+// What touches a lung is where it is, whatever presses.
+TEST(LungTissue, IsPressedWhereItIsFreeAlone) {
+  const LungTissue tissue = Tissue(LungShape(), {.edge = 0.02});
+  const PressedLung lung = tissue.SolvePressed(Points::Zero(3, tissue.points().cols()));
+  EXPECT_EQ(lung.pressed.cwiseAbs().maxCoeff(), 0);
+}
+
+// The root holds the tissue along the surface too.
+TEST(LungTissue, FollowsWhatHoldsItsRoot) {
+  LungElasticity elasticity = {.edge = 0.02};
+  const LungTissue rootless = Tissue(LungShape(), elasticity);
+  elasticity.root = {1, rootless.box()};
+  const LungTissue rooted = Tissue(LungShape(), elasticity);
+  Points shift = Points::Zero(3, rooted.points().cols());
+  Eigen::Index inner = -1;
+  for (Eigen::Index p = 0; p < shift.cols(); ++p) {
+    EXPECT_FALSE(rootless.rooted()[static_cast<size_t>(p)]);
+    if (!rooted.rooted()[static_cast<size_t>(p)]) continue;
+    shift(2, p) = -0.01;
+    if (inner < 0 || rooted.normals()(0, p) < rooted.normals()(0, inner)) inner = p;
+  }
+  ASSERT_GE(inner, 0);
+  const Eigen::Vector3d at = rooted.points().col(inner);
+  EXPECT_LT(rooted.DisplacementAt(rooted.SolveVectors(shift), at).z(), -0.006);
+  EXPECT_GT(rootless.DisplacementAt(rootless.SolveVectors(shift), at).z(), -0.003);
+}
+
+TEST(LungRoot, IsBehindTheMiddleOfTheMedialSide) {
+  const LungRoot right = {-1, {Eigen::Vector3d(-0.12, -0.09, 0.17), Eigen::Vector3d(-0.01, 0.09, 0.39)}};
+  const Eigen::Vector3d medial(1, 0, 0), hilum(-0.02, 0.02, 0.285);
+  EXPECT_TRUE(right.Holds(hilum, medial));
+  EXPECT_FALSE(right.Holds(hilum, -medial)) << "the lateral side";
+  EXPECT_FALSE(right.Holds(hilum + Eigen::Vector3d(0, -0.05, 0), medial)) << "in front of it";
+  EXPECT_FALSE(right.Holds(hilum + Eigen::Vector3d(0, 0, -0.05), medial)) << "the ligament";
+  EXPECT_FALSE(LungRoot().Holds(hilum, medial));
+}
+
 TEST(LungTissue, FollowsAsWithoutAPressure) {
   const LungTissue tissue = Tissue(LungShape(), {.edge = 0.02});
   Points boundary = tissue.normals() * Breath(tissue).asDiagonal();
