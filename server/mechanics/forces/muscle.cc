@@ -231,7 +231,7 @@ void Muscle::AddForceIn(const MuscleLayout<Number>& layout, const EvalContext& a
     const std::int64_t first = part * kBatchesPerPart;
     SetCornerForces(layout, first, std::min(first + kBatchesPerPart, batches), law, active.data(), points, corners);
   });
-  const double* const load = rest_load_.cols() > 0 ? rest_load_.data() : nullptr;
+  const double* const load = rest_load_.cols() > 0 ? LoadIn(at.parameters.posture()).data() : nullptr;
   const auto slices = static_cast<std::int64_t>(layout.corners.first.size()) - 1;
   ParallelFor((slices + kSlicesPerPart - 1) / kSlicesPerPart, [&](std::int64_t part) {
     const std::int64_t first = part * kSlicesPerPart;
@@ -271,7 +271,8 @@ double Muscle::Energy(const EvalContext& at) const {
   double energy = 0;
   for (const MuscleTriangle& triangle : triangles_) energy += EnergyOf(triangle, law, active[triangle.bundle], at.x);
   if (rest_load_.cols() > 0) {
-    energy -= rest_load_.cwiseProduct(at.x.middleCols(vertices_.first, rest_load_.cols())).sum();
+    const Points& load = LoadIn(at.parameters.posture());
+    energy -= load.cwiseProduct(at.x.middleCols(vertices_.first, load.cols())).sum();
   }
   return energy;
 }
@@ -290,6 +291,7 @@ absl::Status Muscle::BalanceAtRest(const ConstPoints& load, const ConstPoints& n
   const PrestressReport report = ChoosePrestress(resting, greatest_resting_tension_, builder.stop, triangles_);
   LayOut();
   rest_load_ = LoadThatIsLeft(model, resting, report);
+  SetPosturalLoads(model);
   pushes.segment(vertices_.first, n) += resting.area.cwiseProduct(report.contact);
   builder.ReportElement(
       "prestress", name(), static_cast<std::int64_t>(triangles_.size()), "triangles",
@@ -297,6 +299,27 @@ absl::Status Muscle::BalanceAtRest(const ConstPoints& load, const ConstPoints& n
                       report.along, report.across, rest_load_.colwise().norm().sum() / resting.area.sum(),
                       report.iterations));
   return absl::OkStatus();
+}
+
+void Muscle::SetPosturalLoads(const Model& model) {
+  for (const v1::Force& force : model.scene.forces()) {
+    const v1::Vector& weight = force.thorax_pressures().abdomen().weight();
+    const Eigen::Vector3d supine = Eigen::Vector3d(weight.x(), weight.y(), weight.z());
+    if (!(supine.norm() > 0)) continue;
+    const Eigen::Vector3d down = DownIn(model.parameters.posture(), supine.normalized());
+    const Eigen::RowVectorXd along = down.transpose() * rest_load_;
+    for (size_t i = 0; i < kPostures.size(); ++i) {
+      const double lost = 1 - down.dot(DownIn(kPostures[i], supine.normalized()));
+      if (lost > 1e-9) postural_loads_[i] = rest_load_ - lost * down * along;
+    }
+  }
+}
+
+const Points& Muscle::LoadIn(v1::Posture posture) const {
+  for (size_t i = 0; i < kPostures.size(); ++i) {
+    if (kPostures[i] == posture && postural_loads_[i].cols() > 0) return postural_loads_[i];
+  }
+  return rest_load_;
 }
 
 // Returns what tensions and contacts leave of the load on the vertices that move, with its sign reversed.

@@ -9,7 +9,9 @@
 // a side follows the live parameters diaphragm_activation breath_force times the breath's signal where positive, times
 // right_activation or left_activation, with a time constant; muscle_strength scales its force; elasticity scales
 // stiffnesses, not tensions. With balanced_at_rest the resting tensions are chosen to hold the other forces at rest
-// (muscle_prestress.h).
+// (muscle_prestress.h), and a constant load L holds what they leave. Where an abdomen has a weight, with d down at rest and
+// e in a posture, unit vectors, what of the load lies along d carries that weight, and goes with it:
+//   L(posture) = L - (1 - d.e) (L.d) d.
 //
 // Energy is that at fixed activation and rates. The stiffness leaves out negative terms.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_MUSCLE_H_
@@ -25,6 +27,7 @@
 #include "server/mechanics/breathing/fibre_bundles.h"
 #include "server/mechanics/breathing/muscle_prestress.h"
 #include "server/mechanics/breathing/muscle_triangle.h"
+#include "server/mechanics/breathing/posture.h"
 #include "server/mechanics/forces/muscle_kernel.h"
 #include "server/mechanics/model_builder.h"
 
@@ -59,8 +62,10 @@ class Muscle final : public Force {
   std::span<const Output> outputs() const override;
   double Read(size_t output, const EvalContext& at) const override;
 
-  // The constant load that balances the others, 3 x the body's vertices [N]; no columns unless balanced at rest.
+  // The constant load that balances the others at rest, 3 x the body's vertices [N]; no columns unless balanced at rest.
   const Points& rest_load() const { return rest_load_; }
+  // That in a posture.
+  const Points& LoadIn(v1::Posture posture) const;
   const std::vector<MuscleTriangle>& triangles() const { return triangles_; }
 
  private:
@@ -78,6 +83,7 @@ class Muscle final : public Force {
   template <typename Number>
   Tensions MeanRatesIn(const MuscleLayout<Number>& layout, const EvalContext& at) const;
   Points LoadThatIsLeft(const Model& model, const RestingLoad& resting, const PrestressReport& report) const;
+  void SetPosturalLoads(const Model& model);
   // Makes layout_ of triangles_.
   void LayOut();
 
@@ -95,6 +101,7 @@ class Muscle final : public Force {
   int origin_ = 0;             // the vertex that positions are relative to in single precision
   Layout layout_;
   Points rest_load_;  // 3 x the body's vertices [N]; no columns unless balanced at rest
+  std::array<Points, kPostures.size()> postural_loads_;  // as rest_load_; no columns where they are the same
 };
 
 }  // namespace phrenic
