@@ -9,8 +9,8 @@
 
 namespace phrenic {
 
-// What a vertex of the middle surface passes on, or its time derivative: position [m], area stretch, normal and
-// padding. Before they are complete, the sums over its triangles take the places of stretch and normal.
+// A vertex of the middle surface, as the points bound to it need it, or its time derivative: position [m], area stretch
+// [1], normal and padding. While the nodes are computed, sums over the triangles take the places of stretch and normal.
 struct alignas(64) SheetNode {
   double numbers[8];
   auto position() { return Eigen::Map<Eigen::Vector3d>(numbers); }
