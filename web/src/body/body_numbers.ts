@@ -62,7 +62,10 @@ export const groups: Group[] = [
   },
 ];
 
-/** A control of a body's number. Its range, default and step are in the unit that is shown, `perUnit` of which is one of SI. */
+/**
+ * A control of a body's number. Its range, default and step are in the unit that is shown, `perUnit` of which is one of
+ * SI.
+ */
 export interface BodyControl {
   control: Control;
   neutral: number | undefined;
@@ -97,7 +100,10 @@ function unitOf(unit: string): string {
   return unit === "years" ? t("years") : unit.replace("deg", "°");
 }
 
-/** Reads a list of bodies: "Title: name=value name=value", a line each; "#" begins a comment. Throws Error for an unknown name. */
+/**
+ * Reads a list of bodies: "Title: name=value name=value", a line each; "#" begins a comment. Throws Error for an
+ * unknown name.
+ */
 export function readBodies(text: string): ReadyBody[] {
   const lines = text.split("\n").filter((line) => line.trim() !== "" && !line.startsWith("#"));
   return lines.map((line) => {

@@ -299,8 +299,8 @@ export class Viewer {
   }
 
   /**
-   * Enables picking of vertices by clicks, and of places in the pictures of a cut [m]. Returns a function that picks at a
-   * place on the canvas [CSS pixels].
+   * Enables picking of vertices by clicks, and of places in the pictures of a cut [m]. Returns a function that picks at
+   * a place on the canvas [CSS pixels].
    */
   enablePicking(
     picked: (vertex: VertexRef | undefined) => void,
@@ -317,7 +317,10 @@ export class Viewer {
     );
   }
 
-  /** Calls `rested` with the vertex under the resting pointer and its place [CSS pixels]; undefined if it rests on no body. */
+  /**
+   * Calls `rested` with the vertex under the resting pointer and its place [CSS pixels]; undefined if it rests on no
+   * body.
+   */
   enableHover(rested: (vertex: VertexRef | undefined, x: number, y: number) => void): void {
     const find = (event: PointerEvent) => {
       const visible = this.views.filter(({ group, isFaded }) => group.visible && !isFaded);
