@@ -69,7 +69,7 @@ class CallsTest(unittest.TestCase):
             phrenic.Session("any", id="mine", server=self.server)
 
     def test_a_session_whose_creation_was_cut_off_is_deleted(self):
-        operation = create("any", None, "", "", None)
+        operation = create("any", None, "", "", None, None)
         made = next(operation)
         deleted = operation.throw(KeyboardInterrupt())
         self.assertEqual(deleted.method, "SessionService.DeleteSession")
