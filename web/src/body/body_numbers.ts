@@ -11,7 +11,7 @@ export interface ReadyBody {
   numbers: BodyNumbers;
 }
 
-/** How the page shows a number, beside what the schema says of it. */
+/** How the page shows a number, in addition to the schema's range, default and help. */
 interface Shown {
   label: string;
   /** Smallest change, in the unit that is shown. */
@@ -21,7 +21,7 @@ interface Shown {
   millimetres?: boolean;
 }
 
-/** Numbers below a heading. */
+/** Numbers under one heading. */
 interface Group {
   title: string;
   numbers: Record<string, Shown>;
