@@ -1,5 +1,5 @@
 // SIMD kernel of PlaceOnSheet. Google Highway compiles it for several instruction sets and selects the best at run
-// time; all give the same numbers.
+// time; all give the same numbers. Thread-safe.
 #ifndef PHRENIC_SERVER_MECHANICS_SKINNING_SHEET_POINTS_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_SKINNING_SHEET_POINTS_KERNEL_H_
 
