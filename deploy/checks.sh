@@ -97,7 +97,7 @@ note_time() {
 }
 
 # --- beside: compilation runs at the lowest priority while packages are installed and tests wait. clang-tidy and gcc's
-# warnings fill what it leaves over, such as a core beside the last of its units: of the class "idle", they give way to it ---
+# warnings run beside it in the scheduler's class "idle", so they use a core only while nothing else does ---
 declare -a beside=() started=()  # process groups, and the names of their checks
 # The checks of a stage that compile and run nothing.
 compiled_by() {
@@ -113,7 +113,7 @@ read_by() {
   if [[ $1 == tidy ]]; then printf '%s\n' tidy warnings; fi
 }
 
-# begin_build STAGE... starts the Release build if it is one of the stages, and no tests come before it.
+# begin_build STAGE... starts the Release build if it is one of the stages and no tests precede it.
 begin_build() {
   case " $* " in
     *" tests "*"build "*) ;;
@@ -121,7 +121,7 @@ begin_build() {
   esac
 }
 
-# begin_beside STAGE... starts what the stages compile, one after the other, and what they read.
+# begin_beside STAGE... starts the compilations of the stages, one after the other, and the checks that read sources.
 begin_beside() {
   local -a compiled read
   local stage
@@ -154,7 +154,7 @@ begin_checks() {
   set +m
 }
 
-# signal_beside SIGNAL sends it to what runs beside.
+# signal_beside SIGNAL sends the signal to the process groups that run beside.
 signal_beside() {
   local group
   for group in "${beside[@]}"; do kill "-$1" -- "-$group" 2>/dev/null || true; done
@@ -394,8 +394,8 @@ check_tsan_build() {
   sanitized "$root/build/tsan" thread tsan_test stream_test session_test
 }
 
-# gRPC's library is not built for ThreadSanitizer, so only tests of folders below service/ run under it; of these, not the
-# long ones that have one thread, which the asan stage runs.
+# gRPC's library is not built for ThreadSanitizer, so only tests of folders below service/ run under it. Long tests with one
+# thread are left out; the asan stage runs them.
 stage_tsan() {
   local folder=$root/build/tsan options=ignore_noninstrumented_modules=1:halt_on_error=1
   check beside tsan_build

@@ -16,8 +16,8 @@ import shlex
 import subprocess
 import sys
 
-# clang reads the commands of gcc, and calls it shadowing if a local has the name of something in another file of a unit. Of
-# kernels it reads the code for one instruction set: that for the others is the same text.
+# clang-tidy gets the commands of gcc. -Wno-shadow: a local may have the name of something in another file of its unit.
+# HWY_COMPILE_ONLY_STATIC: of kernels it checks one instruction set; the text for the others is the same.
 FOR_CLANG = ["-Wno-unknown-warning-option", "-Wno-shadow", "-DHWY_COMPILE_ONLY_STATIC"]
 
 

@@ -19,9 +19,9 @@
 namespace phrenic::client {
 namespace {
 
-constexpr int kMostHoles = 20;  // that are named
+constexpr int kMostHoles = 20;  // number that is listed
 
-// What a count of each of kRepairs counts.
+// The unit of the number of changes of each of kRepairs.
 constexpr const char* kChanged[] = {"duplicate or unused vertices removed",
                                     "vertices of cuts merged",
                                     "slivers and doubled triangles removed",
@@ -64,12 +64,13 @@ void Repair(const ConvertOptions& options, Mesh& mesh) {
   for (size_t r = 0; r < std::size(kRepairs); ++r) {
     if (report.changes[r] > 0) std::cerr << "phrenic: " << report.changes[r] << " " << kChanged[r] << "\n";
   }
-  if (report.parts > 1) std::cerr << "phrenic: " << report.parts << " parts are left, which nothing joins\n";
+  if (report.parts > 1) std::cerr << "phrenic: " << report.parts << " separate parts are left\n";
   const int shown = std::min(kMostHoles, static_cast<int>(report.open.size()));
   for (int h = 0; h < shown; ++h) {
     std::cerr << "phrenic: " << Describe(report.open[h], options.out_unit_mm) << " is left open\n";
   }
-  if (const auto more = report.open.size() - shown; more > 0) std::cerr << "phrenic: so are " << more << " others\n";
+  if (const auto more = report.open.size() - shown; more > 0)
+    std::cerr << "phrenic: " << more << " more are left open\n";
 }
 
 void Shift(const ConvertOptions& options, Mesh& mesh) {
@@ -121,7 +122,7 @@ CommandFunction SetUpConvert(CLI::App& command) {
           "--repair", options->repairs,
           "weld (merge coincident vertices), cuts (join the sides of cuts), slivers (remove thin and doubled "
           "triangles), fins (remove pieces attached by one edge), orient (make neighbours agree and closed "
-          "parts face outwards), pinches (part surfaces that touch in a point or an edge), crumbs (remove small "
+          "parts face outwards), pinches (separate surfaces that touch in a point or an edge), crumbs (remove small "
           "parts), holes (close small ones), or all (none)")
       ->delimiter(',')
       ->allow_extra_args(false);

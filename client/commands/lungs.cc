@@ -289,17 +289,19 @@ CommandFunction SetUpLungs(CLI::App& command) {
   command.add_option("--brick", options->edge_mm, "edge of the bricks of tissue [mm]")
       ->check(NumberIn(5, 50))
       ->capture_default_str();
-  command.add_flag("--glued", options->glued, "glue the lungs to what surrounds them, for comparison: they slide");
+  command.add_flag("--glued", options->glued,
+                   "for comparison: glue the lungs to what surrounds them; by default they slide");
   command.add_flag("--weightless", options->weightless,
-                   "take the lungs' weight away, for comparison: it makes dependent tissue softer");
-  command.add_flag(
-      "--unfilled", options->unfilled,
-      "let the lungs follow what touches them at rest alone, for comparison: they fill the space that opens");
+                   "for comparison: lungs without weight; by default weight makes dependent tissue softer");
+  command.add_flag("--unfilled", options->unfilled,
+                   "for comparison: lungs that only follow what touches them at rest; by default they also fill the "
+                   "space that opens");
   command.add_flag(
       "--rootless", options->rootless,
-      "let the lungs slide at their root too, for comparison: bronchi and vessels bind it to the mediastinum");
-  command.add_flag("--bound-margin", options->bound_margin,
-                   "bind the lungs' margin to the diaphragm, for comparison: it slides into the recess that opens");
+      "for comparison: lungs that slide at their root too; by default bronchi and vessels bind it to the mediastinum");
+  command.add_flag(
+      "--bound-margin", options->bound_margin,
+      "for comparison: bind the lungs' margin to the diaphragm; by default it slides into the recess that opens");
   AddDataFolder(command, options->data_dir);
   return Bind(&Lungs, options);
 }

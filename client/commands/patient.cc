@@ -208,9 +208,10 @@ CommandFunction SetUpPatient(CLI::App& command) {
           "their folder, or an archive (.zip, .tar); or a scene (.textproto) whose bodies are surface files")
       ->required();
   command
-      .add_option("--labels", options->labels,
-                  "map of the numbers: totalsegmentator, vista3d, moose, cads, or a file NAME.textproto; FILE=MAP for "
-                  "one of several files; without it, names count, else the installed map that fits best")
+      .add_option(
+          "--labels", options->labels,
+          "map of the labels' numbers: totalsegmentator, vista3d, moose, cads, or a file NAME.textproto; FILE=MAP for "
+          "one of several files; default: the names in the file, else the installed map that fits best")
       ->allow_extra_args(false);
   command.add_option("--data", options->data, "folder of the scene's surface files; without it, that of --out");
   command.add_option("--out", options->out, "data folder for the surfaces and the scene")->required();

@@ -137,7 +137,7 @@ void JudgeRepairs(v1::SurfaceReport& report) {
   AddIf(report.misoriented_edges(), repairs,
         "%d edges join triangles of opposite orientation: volumes and normals are wrong there (--repair orient)");
   AddIf(report.pinched_vertices(), repairs,
-        "%d vertices join surfaces that touch in a point, where genus and normals are wrong: part them (--repair "
+        "%d vertices join surfaces that touch in a point, where genus and normals are wrong: separate them (--repair "
         "pinches)");
   AddIf(report.boundary_edges(), repairs,
         "%d edges are open: close the surface if it is an organ, not a sheet (--repair cuts,holes; those larger than "

@@ -14,9 +14,9 @@ namespace phrenic::imaging {
 // half of the maximum is inside) or LABELMAP (8 or 16 bits). Labels are segment numbers. Frames may come in any order;
 // what has no frame is empty; where segments overlap the higher number counts, and `remarks` has how often. `names` are
 // the segments' labels, `meanings` those of their types' codes with laterality: "Upper lobe of lung Left". Pixels may
-// be uncompressed, deflated with the file, or RLE. The contours of an RT Structure Set are filled
-// (rt_structures.h). Reads nothing that identifies a patient. INVALID_ARGUMENT "name:
-// ..." with problem and remedy, also for other kinds of DICOM objects; RESOURCE_EXHAUSTED for more voxels. Thread-safe.
+// be uncompressed, deflated with the file, or RLE. The contours of an RT Structure Set are filled (rt_structures.h).
+// Reads nothing that identifies a patient. INVALID_ARGUMENT "name: ..." with problem and remedy, also for other kinds
+// of DICOM objects; RESOURCE_EXHAUSTED for more than `max_voxels`. Thread-safe.
 absl::StatusOr<LabelVolume> ParseDicomSegmentation(std::string_view name, std::string_view bytes,
                                                    std::size_t max_voxels = kMaxVoxels);
 

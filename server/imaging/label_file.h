@@ -12,8 +12,8 @@
 namespace phrenic::imaging {
 
 // Parses a DICOM Segmentation (dicom_segmentation.h) or a NIfTI file (nifti.h). The content decides, not the name's
-// ending. INVALID_ARGUMENT "name: ..." with problem and remedy; RESOURCE_EXHAUSTED for a volume of more voxels, before
-// their memory is taken. Thread-safe.
+// ending. INVALID_ARGUMENT "name: ..." with problem and remedy; RESOURCE_EXHAUSTED for more than `max_voxels`, before
+// their memory is allocated. Thread-safe.
 absl::StatusOr<LabelVolume> ParseLabels(std::string_view name, std::string_view bytes,
                                         std::size_t max_voxels = kMaxVoxels);
 

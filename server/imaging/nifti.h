@@ -17,8 +17,8 @@ namespace phrenic::imaging {
 // Parses a single-file NIfTI-1 or NIfTI-2 image, .nii or .nii.gz, of either endianness: one 3D volume of any integer
 // type with values 0 to 65,535. The voxel-to-patient map is the sform if present, else the qform, converted from
 // NIfTI's RAS to LPS. Label names come from an extension with a table `<Label Key="5" ...>`, as TotalSegmentator writes
-// it. INVALID_ARGUMENT "name: ..." or "name:byte N: ..." with problem and remedy; RESOURCE_EXHAUSTED for more voxels,
-// or more than twice as many bytes.
+// it. INVALID_ARGUMENT "name: ..." or "name:byte N: ..." with problem and remedy; RESOURCE_EXHAUSTED for more than
+// `max_voxels`, or more than twice as many bytes. Thread-safe.
 absl::StatusOr<LabelVolume> ParseNifti(std::string_view name, std::string_view bytes,
                                        std::size_t max_voxels = kMaxVoxels);
 

@@ -23,7 +23,7 @@ struct PhantomBody {
   std::string name;
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
   double flattening = 0;                                           // lowering of the domes before scaling [mm]
-  std::shared_ptr<const anatomy::PhysiqueMap> physique = nullptr;  // applied before; null: none
+  std::shared_ptr<const anatomy::PhysiqueMap> physique = nullptr;  // applied before scaling; null: none
   Eigen::Vector3d shift = Eigen::Vector3d(12, -140, 1050);         // of the origin, arbitrary as in scanners [mm]
 
   // Map points from the generated thorax' frame to the body's [m], and back. For `soft` structures, flattening lowers

@@ -1,4 +1,5 @@
-// Holes of a triangle surface: loops of boundary edges, and how small ones are closed.
+// Holes of a triangle surface: finds the loops of boundary edges and closes small ones. Threads may call it with
+// different meshes.
 #ifndef PHRENIC_SERVER_MESH_HOLES_H_
 #define PHRENIC_SERVER_MESH_HOLES_H_
 
@@ -26,7 +27,7 @@ std::vector<Hole> FindHoles(const Mesh& mesh);
 // holes closed.
 int CloseHoles(double extent, Mesh& mesh);
 
-// Returns a sentence for one hole: number of edges, extent and place.
+// Returns words for one hole: number of edges, extent and place [mm]. `millimetres_a_unit` is the unit of the mesh.
 std::string Describe(const Hole& hole, double millimetres_a_unit);
 
 }  // namespace phrenic

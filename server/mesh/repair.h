@@ -1,6 +1,6 @@
 // Repairs for defective triangle surfaces from other programs. Each function repairs one kind of defect, keeps the
 // order of the remaining vertices and triangles, renumbers regions and edges, and returns how much it changed. Readers
-// call none of them; the caller chooses. Not thread-safe for one mesh.
+// call none of them; the caller chooses. Threads may call them with different meshes.
 #ifndef PHRENIC_SERVER_MESH_REPAIR_H_
 #define PHRENIC_SERVER_MESH_REPAIR_H_
 

@@ -1,4 +1,5 @@
-// All repairs of a triangle surface, in an order in which each helps the next, until none changes it.
+// Runs the repairs of repair.h and holes.h in an order in which each helps the next, until none changes the surface.
+// Threads may call it with different meshes.
 #ifndef PHRENIC_SERVER_MESH_REPAIR_ALL_H_
 #define PHRENIC_SERVER_MESH_REPAIR_ALL_H_
 
@@ -15,7 +16,7 @@ namespace phrenic {
 inline constexpr std::string_view kRepairs[] = {"weld",   "cuts",    "slivers", "fins",
                                                 "orient", "pinches", "crumbs",  "holes"};
 
-// Lengths [m].
+// Lengths are in the unit of the mesh; the defaults are in metres.
 struct RepairOptions {
   std::vector<std::string> repairs;  // of kRepairs; "all" stands for each
   double within = 1e-6;              // vertices closer than this coincide; height of slivers

@@ -1,10 +1,10 @@
-// What moves the lungs of a model: their surroundings, the space that opens for each of them, their weight.
+// The motion of a model's lungs by its causes: their surroundings, the space that opens for each of them, their weight.
 //
 // A lung fills its side of the thorax, also where it cannot follow what touched it at rest: at its margin, which slides
 // into the recess that the diaphragm opens. So the tissue follows its surroundings under a pressure p on its whole
 // free surface, one for each side, at which the lungs of the side gain the space s that opens for them,
 //   integral n . u dS = s,  u = u_surroundings + p u_pressure.
-// p is what the pleural pressure falls by, over Young's modulus, beside what the springs of the contact bear.
+// p is the fall of the pleural pressure over Young's modulus [1], less what the springs of the contact bear.
 #ifndef PHRENIC_SERVER_PHYSIOLOGY_LUNG_DRIVE_H_
 #define PHRENIC_SERVER_PHYSIOLOGY_LUNG_DRIVE_H_
 
@@ -20,7 +20,7 @@
 
 namespace phrenic::physiology {
 
-// Which causes act on the lungs, beside what touches them; without one, for comparisons.
+// The causes that act on the lungs beside what touches them. Comparisons switch one of them off.
 struct LungCauses {
   bool weight = true;  // the tissue has a weight
   bool space = true;   // the lungs fill the space that opens for them

@@ -19,8 +19,8 @@ struct ChangedBreath {
 // What a scene may lack.
 enum class Needs { kSheet, kFibres, kWall, kBones, kLungs, kPressures };
 
-// What of a body's size a range follows: the ranges are the adult's, a man of 30 years and 1.75 m, and are multiplied
-// by this of the body over the adult's (schema/body_size.h). kLungs: total lung capacity.
+// The size with which a range scales. The ranges are those of the adult, a man of 30 years and 1.75 m, and are
+// multiplied by the ratio of the body's size to the adult's (schema/body_size.h). kLungs: total lung capacity.
 enum class Follows { kNothing, kLength, kLungs, kInspired, kVital };
 
 struct Row {

@@ -8,7 +8,7 @@
 
 namespace phrenic::schema {
 
-// Returns the name that `wanted` probably misspells, whatever the case of its letters: the only one that begins with
+// Returns the name that `wanted` probably misspells, without regard to case: the only one that begins with
 // it, or the one with the fewest letters inserted, left out, replaced or exchanged with a neighbour, if these are at
 // most half of the name's length. The first of several. Returns "" if no name is so near.
 std::string NearestName(std::string_view wanted, const std::vector<std::string>& names);

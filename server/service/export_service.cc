@@ -27,6 +27,10 @@ void ExportService::AddTo(CallTable& calls) {
   calls.Add(Lane::kStream, *this, &ExportService::DownloadExport);
 }
 
+absl::Status ExportService::CheckOwns(const std::string& id, const access::Caller& caller) const {
+  return guard_.CheckOwns(AccessGuard::Kind::kExport, id, exports_.OwnerOf(id), caller);
+}
+
 grpc::Status ExportService::ListFormats(grpc::CallbackServerContext* context, const v1::ListFormatsRequest* request,
                                         v1::ListFormatsResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
@@ -64,10 +68,7 @@ grpc::Status ExportService::WatchExport(grpc::CallbackServerContext* context, co
                                         ReplyStream<v1::WatchExportResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(),
-                                          exports_.OwnerOf(request->export_id()), *caller);
-      !own.ok())
-    return ToGrpc(own);
+  if (absl::Status own = CheckOwns(request->export_id(), *caller); !own.ok()) return ToGrpc(own);
   v1::WatchExportResponse response;
   return ToGrpc(exports_.Watch(
       request->export_id(), [&] { return context->IsCancelled(); },
@@ -90,10 +91,7 @@ grpc::Status ExportService::DeleteExport(grpc::CallbackServerContext* context, c
                                          v1::DeleteExportResponse*) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(),
-                                          exports_.OwnerOf(request->export_id()), *caller);
-      !own.ok())
-    return ToGrpc(own);
+  if (absl::Status own = CheckOwns(request->export_id(), *caller); !own.ok()) return ToGrpc(own);
   return ToGrpc(exports_.Delete(request->export_id()));
 }
 
@@ -123,10 +121,7 @@ grpc::Status ExportService::DownloadExport(grpc::CallbackServerContext* context,
                                            ReplyStream<v1::DownloadExportResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kExport, request->export_id(),
-                                          exports_.OwnerOf(request->export_id()), *caller);
-      !own.ok())
-    return ToGrpc(own);
+  if (absl::Status own = CheckOwns(request->export_id(), *caller); !own.ok()) return ToGrpc(own);
   return ToGrpc(Download(*request, *writer));
 }
 

@@ -2,6 +2,8 @@
 #ifndef PHRENIC_SERVER_SERVICE_EXPORT_SERVICE_H_
 #define PHRENIC_SERVER_SERVICE_EXPORT_SERVICE_H_
 
+#include <string>
+
 #include "phrenic/v1/export.pb.h"
 #include "server/service/calls/access_guard.h"
 #include "server/service/calls/call_table.h"
@@ -44,6 +46,8 @@ class ExportService final {
                               ReplyStream<v1::DownloadExportResponse>* writer);
 
  private:
+  // The errors of AccessGuard::CheckOwns.
+  absl::Status CheckOwns(const std::string& id, const access::Caller& caller) const;
   // CANCELLED if the client disconnects. The errors of Exports::File and SpoolFile::Read.
   absl::Status Download(const v1::DownloadExportRequest& request,
                         ReplyStream<v1::DownloadExportResponse>& writer) const;

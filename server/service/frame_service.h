@@ -25,7 +25,7 @@ namespace phrenic::service {
 // each method.
 class FrameService final {
  public:
-  // The references outlive the service. `watches`: who takes a stream's messages itself.
+  // The references outlive the service. `watches`: claims of streams that the web gateway sends.
   FrameService(session::Table& table, AccessGuard& guard, Metrics& metrics, const session::Limits& limits,
                WatchClaims& watches);
 

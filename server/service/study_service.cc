@@ -46,6 +46,10 @@ void StudyService::Restore(const std::vector<store::SavedRecord>& records, std::
       records, [this](const std::string& account) { return guard_.AccountOf(account); }, lost);
 }
 
+absl::Status StudyService::CheckOwns(const std::string& id, const access::Caller& caller) const {
+  return guard_.CheckOwns(AccessGuard::Kind::kStudy, id, studies_.OwnerOf(id), caller);
+}
+
 grpc::Status StudyService::CreateStudy(grpc::CallbackServerContext* context, const v1::CreateStudyRequest* request,
                                        v1::CreateStudyResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
@@ -60,10 +64,7 @@ grpc::Status StudyService::WatchStudy(grpc::CallbackServerContext* context, cons
                                       ReplyStream<v1::WatchStudyResponse>* writer) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(),
-                                          studies_.OwnerOf(request->study_id()), *caller);
-      !own.ok())
-    return ToGrpc(own);
+  if (absl::Status own = CheckOwns(request->study_id(), *caller); !own.ok()) return ToGrpc(own);
   v1::WatchStudyResponse response;
   return ToGrpc(studies_.Watch(
       request->study_id(), [&] { return context->IsCancelled(); },
@@ -86,10 +87,7 @@ grpc::Status StudyService::DeleteStudy(grpc::CallbackServerContext* context, con
                                        v1::DeleteStudyResponse*) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(),
-                                          studies_.OwnerOf(request->study_id()), *caller);
-      !own.ok())
-    return ToGrpc(own);
+  if (absl::Status own = CheckOwns(request->study_id(), *caller); !own.ok()) return ToGrpc(own);
   return ToGrpc(studies_.Delete(request->study_id()));
 }
 
@@ -97,10 +95,7 @@ grpc::Status StudyService::GetStudyPage(grpc::CallbackServerContext* context, co
                                         v1::GetStudyPageResponse* response) {
   const auto caller = guard_.Admit(*context, *request);
   if (!caller.ok()) return ToGrpc(caller.status());
-  if (absl::Status own = guard_.CheckOwns(AccessGuard::Kind::kStudy, request->study_id(),
-                                          studies_.OwnerOf(request->study_id()), *caller);
-      !own.ok())
-    return ToGrpc(own);
+  if (absl::Status own = CheckOwns(request->study_id(), *caller); !own.ok()) return ToGrpc(own);
   const auto seen = studies_.Wait(request->study_id(), 0, absl::ZeroDuration());
   if (!seen.ok()) return ToGrpc(seen.status());
   auto page = StudyPage(seen->message, web_root_);

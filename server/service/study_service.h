@@ -59,6 +59,9 @@ class StudyService final {
                         ReplyStream<v1::RunBatchResponse>* writer);
 
  private:
+  // The errors of AccessGuard::CheckOwns.
+  absl::Status CheckOwns(const std::string& id, const access::Caller& caller) const;
+
   session::Models& models_;
   const std::string web_root_;
   AccessGuard& guard_;

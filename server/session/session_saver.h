@@ -40,7 +40,7 @@ class SessionSaver {
 
   // The next change begins at t = 0.
   void NoteReset() { from_start_ = true; }
-  // The next change is the session's last: it is saved with a state, so that a restart steps nothing again.
+  // The next change is the session's last: it is saved with a state, so that a restart repeats no step.
   void NoteEnd() { ends_ = true; }
   // Saves `moment` with the session's status, and `state`, at which it holds, if a state is due. Requires: saves(). A
   // state is due if none was saved yet, if the last one is of another tick and too old or the session ends, or if too

@@ -16,8 +16,8 @@
 namespace phrenic::session {
 namespace {
 
-// Each session has copies of its state, also if another account made the model: those of one account have at most so many
-// times --max-vertices, and all together twice as many.
+// Each session has copies of its state, also if another account made the model. Limits of the vertices of all sessions,
+// in multiples of --max-vertices.
 constexpr std::int64_t kScenesOfAccount = 2, kScenesInAll = 4;
 
 using Sessions = std::map<std::string, std::shared_ptr<Session>>;

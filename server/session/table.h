@@ -48,13 +48,12 @@ class Table {
   // Sets the names for Restore and TakeOver; null: they are unchanged. Call it before them.
   void set_account_names(AccountNames names) { account_names_ = std::move(names); }
 
-  // Restores the sessions of an earlier server from the store; those that played continue to play, once all are
-  // restored, so that they do not take the processor from those that wait. Returns the sessions
-  // that could not be restored, with the reason; they stay in the store under their id until they are deleted, and the
-  // next server tries again. A session whose scene compiles to another model in this build is carried over (CarryOver).
-  // Restores as many at a time as there are processor cores, and calls `progress` before each, one call at a time.
-  // Returns the errors of store::Store::Load; UNAVAILABLE if the cluster cannot
-  // say who owns a session. Requires: there is a store, and no session was created yet.
+  // Restores the sessions of an earlier server from the store, as many at a time as there are processor cores. Calls
+  // `progress` before each, one call at a time. Sessions that played continue to play once all are restored, so that
+  // they do not delay the others. A session whose scene compiles to another model in this build is carried over
+  // (CarryOver). Returns the sessions that could not be restored, with the reason; they stay in the store under their
+  // id until they are deleted, and the next server tries again. The errors of store::Store::Load; UNAVAILABLE if the
+  // cluster cannot say who owns a session. Requires: there is a store, and no session was created yet.
   absl::StatusOr<std::map<std::string, absl::Status>> Restore(absl::FunctionRef<void(const std::string& id)> progress)
       ABSL_LOCKS_EXCLUDED(mutex_);
 
@@ -136,7 +135,7 @@ class Table {
   absl::StatusOr<SessionOrigin> Begin(const Claim& claim, const Model& model, std::vector<Uploads::Held> surfaces,
                                       ControlBook control) const;
   struct Restoring;
-  // Restores one session after the other until none is left. Several threads call it.
+  // Restores sessions one after the other until none is left. Several threads call it at the same time.
   void RestoreNext(Restoring& restoring) ABSL_LOCKS_EXCLUDED(mutex_);
   // Restores the session, or keeps it in lost_ and sets `lost` to the reason. Errors: those of Restore.
   absl::Status RestoreOne(store::SavedSession saved, absl::Status& lost) ABSL_LOCKS_EXCLUDED(mutex_);

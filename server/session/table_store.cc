@@ -10,14 +10,14 @@
 
 namespace phrenic::session {
 
-// What the threads that restore sessions share.
+// State shared by the threads that restore sessions.
 struct Table::Restoring {
-  std::vector<store::SavedSession> sessions;  // by the thread that took one with the mutex held
+  std::vector<store::SavedSession> sessions;  // each is used by the thread that took it with the mutex held
   absl::FunctionRef<void(const std::string& id)> progress;
   absl::Mutex mutex = {};
-  std::size_t next = 0;                           // of the sessions
+  std::size_t next = 0;                           // index of the next session to restore
   std::map<std::string, absl::Status> lost = {};  // by id
-  absl::Status problem = {};                      // no further session is restored
+  absl::Status problem = {};                      // not OK: no further session is restored
 };
 
 absl::StatusOr<SessionOrigin> Table::Begin(const Claim& claim, const Model& model, std::vector<Uploads::Held> surfaces,

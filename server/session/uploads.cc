@@ -51,7 +51,7 @@ bool IsSurfaceName(const std::string& name) {
   });
 }
 
-// Parses a surface; of labels, looks whether they can be some.
+// Parses a surface; of a label volume, checks the format alone.
 absl::StatusOr<Uploads::Finished> Checked(const Uploads::Held& held, const std::string& bytes, double unit_mm) {
   if (held.kind == Uploads::Kind::kLabels) {
     absl::Status labels =

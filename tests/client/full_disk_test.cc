@@ -1,5 +1,5 @@
-// What cannot be written is an error that names it: standard output, and each file that a command writes. /dev/full
-// behaves as a full disk.
+// A command fails and names its output if that cannot be written: standard output, and each file that a command writes.
+// /dev/full behaves as a full disk.
 #include <gmock/gmock.h>
 
 #include "tests/client/programs.h"

@@ -89,7 +89,7 @@ class ConstraintContract : public testing::TestWithParam<ConstraintCase> {
 };
 
 #ifdef PHRENIC_SANITIZED
-constexpr int kManySteps = 10'000;  // which sanitizers see as well; the Release build makes all
+constexpr int kManySteps = 10'000;  // enough for sanitizers; the Release build takes all steps
 #else
 constexpr int kManySteps = 100'000;
 #endif

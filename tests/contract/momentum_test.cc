@@ -71,7 +71,7 @@ void StopCentres(const Model& model, State& state) {
 }
 
 #ifdef PHRENIC_SANITIZED
-constexpr double kOfTheTime = 0.1;  // which sanitizers see as well; the Release build runs all of it
+constexpr double kOfTheTime = 0.1;  // enough for sanitizers; the Release build runs the whole time
 #else
 constexpr double kOfTheTime = 1;
 #endif

@@ -92,7 +92,9 @@ describe("measuring", () => {
 
 describe("names beside the scene", () => {
   const count = () => viewer.page.locator(".name-label").count();
-  /** Returns where the names and their leaders are, all at one time: each picture of a moving camera places them anew. */
+  /**
+   * Returns where the names and their leaders are, all at one time: each picture of a moving camera places them anew.
+   */
   const placed = async () => {
     const read = () => {
       const boxes = [...document.querySelectorAll(".name-label")].map((each) => each.getBoundingClientRect());

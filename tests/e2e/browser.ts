@@ -13,7 +13,10 @@ declare global {
 
 const chromiumPaths = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
 
-/** Starts headless Chromium with a new profile, as on a machine without a graphics card: the processor draws and composes. */
+/**
+ * Starts headless Chromium with a new profile, as on a machine without a graphics card: the processor draws and
+ * composes.
+ */
 export async function launchBrowser(): Promise<Browser> {
   const executablePath = [process.env.PHRENIC_CHROMIUM ?? "", ...chromiumPaths].find(
     (path) => path !== "" && existsSync(path),
@@ -36,7 +39,10 @@ export async function launchBrowser(): Promise<Browser> {
   });
 }
 
-/** True for an error or a warning of the page. Chromium itself warns of reading the picture back, where the processor composes. */
+/**
+ * True for an error or a warning of the page. Chromium itself warns of reading the picture back, where the processor
+ * composes.
+ */
 export function isComplaint(message: ConsoleMessage): boolean {
   return ["error", "warning"].includes(message.type()) && !message.text().includes("GPU stall due to ReadPixels");
 }
@@ -54,8 +60,8 @@ export async function endAll(browser: Browser | undefined, server: Server | unde
 }
 
 /**
- * Draws the pages of `context` at most eight times a second, whatever the machine could: tests look at what is drawn, and
- * without a graphics card each drawing takes a core for 50 ms, which the simulation and the other browsers need.
+ * Draws the pages of `context` at most eight times a second, whatever the machine could: tests look at what is drawn,
+ * and without a graphics card each drawing takes a core for 50 ms, which the simulation and the other browsers need.
  */
 export async function slowDisplay(context: BrowserContext): Promise<void> {
   await context.addInitScript(() => {
@@ -102,7 +108,10 @@ export class ViewerPage {
     return this.page.evaluate(() => window.phrenic!.tick());
   }
 
-  /** Returns every `stride`-th vertex of a body in the newest frame [m] and its tick, once a frame of the body is decoded. */
+  /**
+   * Returns every `stride`-th vertex of a body in the newest frame [m] and its tick, once a frame of the body is
+   * decoded.
+   */
   async sample(body: string, stride = 200): Promise<{ tick: number; points: [number, number, number][] }> {
     const decoded = (name: string) => {
       try {

@@ -26,7 +26,9 @@ const columns: Column[] = [
   { preset: "pneumothorax-right", title: "Right pneumothorax", time: 6.05 },
   { preset: "ventilator", title: "Ventilator, 10 cmH₂O", time: 6.05 },
 ];
-/** Both views, and where their planes cut, as a fraction of the scene: through both domes, and through the right one. */
+/**
+ * Both views, and where their planes cut, as a fraction of the scene: through both domes, and through the right one.
+ */
 const views = [
   { side: "front", plane: "coronal", position: 0.5 },
   { side: "left", plane: "sagittal", position: 0.28 },

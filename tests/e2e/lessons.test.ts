@@ -35,7 +35,10 @@ afterAll(() => endAll(browser, server));
 /** The measures of a scene over one breath: values by name, one for each sample. */
 type Breath = Map<string, number[]>;
 
-/** Time between two samples, and time that passes before them [simulated s]; then every claim is within 1 % of later breaths. */
+/**
+ * Time between two samples, and time that passes before them [simulated s]; then every claim is within 1 % of later
+ * breaths.
+ */
 const interval = 0.05;
 const settling = 4;
 

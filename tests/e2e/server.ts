@@ -50,8 +50,8 @@ export class Server {
   }
 
   /**
-   * Starts the process again on the same ports. Resolves when it serves the page and has its first session; throws Error
-   * after a minute.
+   * Starts the process again on the same ports. Resolves when it serves the page and has its first session; throws
+   * Error after a minute.
    */
   async restart(): Promise<void> {
     mkdirSync(outFolder, { recursive: true });

@@ -12,7 +12,9 @@ import { outFolder, type Server } from "./server";
 let server: Server;
 let browser: Browser;
 
-/** Of a breath [s]: a short one, since a second of a film has 25 pictures, each of which takes the processor a second. */
+/**
+ * Of a breath [s]: a short one, since a second of a film has 25 pictures, each of which takes the processor a second.
+ */
 const breathLength = 0.8;
 
 beforeAll(async () => {

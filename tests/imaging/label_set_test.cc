@@ -202,7 +202,7 @@ TEST(LabelSet, AnArchiveIsReadAsItsFiles) {
   const absl::StatusOr<LabelInput> input = ParseLabelInput("labels", tar, "");
   ASSERT_TRUE(input.ok()) << input.status();
   EXPECT_EQ(input->meanings.labels_size(), 1 + 24 + 1);
-  EXPECT_THAT(input->volume.remarks, Contains(HasSubstr("no label files: notes.txt")));
+  EXPECT_THAT(input->volume.remarks, Contains(HasSubstr("not label files: notes.txt")));
   EXPECT_THAT(std::string(ParseLabelInput("labels", Tar({{"a.txt", "a"}}), "").status().message()),
               HasSubstr("has no label file"));
   for (const std::size_t length : {std::size_t{700}, liver.size() / 2, tar.size() / 2}) {

@@ -148,7 +148,7 @@ LabelVolume Voxelised(const std::vector<PatientBody>& bodies, const LabelVolume&
   return volume;
 }
 
-// The whole way, as `phrenic patient` goes it.
+// All steps of `phrenic patient`.
 TEST_F(RealThorax, ItsLabelsOf2MmHaveItsDiaphragmWithoutATower) {
   v1::LabelMap map;
   const LabelVolume volume = Voxelised(surfaces_, seen_.volume, 2, map);

@@ -11,6 +11,8 @@
 #include <sstream>
 #include <string>
 
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
 #include "server/anatomy/anatomy.h"
 #include "server/mechanics/compile/compile.h"
 #include "server/mechanics/compile/presets.h"
@@ -87,7 +89,7 @@ inline const physiology::Recording& CoarseBreath(const std::string& preset) {
   return breaths.emplace(preset, *std::move(breath)).first->second;
 }
 
-// Returns a section of the physiology page, from its heading to the next.
+// Returns a section of the physiology page, from its heading to the next, with single spaces in place of line breaks.
 inline std::string PhysiologyPage(const std::string& heading) {
   std::ifstream file(PHRENIC_SOURCE_DIR "/server/physiology/README.md");
   std::stringstream text;
@@ -95,7 +97,9 @@ inline std::string PhysiologyPage(const std::string& heading) {
   const std::string page = text.str();
   const size_t begin = page.find("\n## " + heading + "\n");
   EXPECT_NE(begin, std::string::npos) << heading;
-  return begin == std::string::npos ? "" : page.substr(begin, page.find("\n## ", begin + 1) - begin);
+  if (begin == std::string::npos) return "";
+  const std::string section = page.substr(begin, page.find("\n## ", begin + 1) - begin);
+  return absl::StrJoin(absl::StrSplit(section, absl::ByAnyChar(" \n"), absl::SkipEmpty()), " ");
 }
 
 // A fixture whose model all tests of a suite share.

@@ -1,4 +1,4 @@
-"""A wrong argument is an error of phrenic's that names it, whatever its type, and whichever method takes it."""
+"""A wrong argument raises an error of phrenic that names the argument, for every type and every method."""
 
 import math
 import os

@@ -5,10 +5,8 @@
 
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "server/imaging/label_file.h"
 #include "server/imaging/labels/label_set.h"
 
@@ -36,42 +34,23 @@ absl::Status ReadEntry(const std::string& name, archive* reader, std::size_t& le
     if (got < 0) return Damaged(name, reader);
     if (got == 0) return absl::OkStatus();
     const auto size = static_cast<std::size_t>(got);
-    if (size > left) return absl::ResourceExhaustedError(absl::StrCat(name, ": its files have more than 4 GiB"));
+    if (size > left)
+      return absl::ResourceExhaustedError(
+          absl::StrCat(name, ": its files have more than 4 GiB; pack only label files"));
     left -= size;
     bytes.append(block, 0, size);
   }
 }
 
-// Collects what the files of an archive are.
-struct ArchivedLabels {
-  LabelSet labels;
-  std::vector<std::string> left_out;
-  int files = 0;
-};
-
 absl::Status AddFile(const std::string& file, std::string_view bytes, const std::string& choice, std::size_t max_voxels,
-                     ArchivedLabels& found) {
+                     LabelSet& labels) {
   if (!IsLabelFile(bytes)) {
-    found.left_out.push_back(file);
+    labels.LeaveOut(file);
     return absl::OkStatus();
   }
   absl::StatusOr<LabelVolume> volume = ParseLabels(file, bytes, max_voxels);
   if (!volume.ok()) return volume.status();
-  ++found.files;
-  return found.labels.Add(file, *std::move(volume), choice);
-}
-
-absl::StatusOr<LabelVolume> FinishSet(const std::string& name, ArchivedLabels found) {
-  if (found.files == 0) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(name, ": has no label file: NIfTI, DICOM Segmentation or RT Structure Set"));
-  }
-  absl::StatusOr<LabelVolume> volume = found.labels.Finish();
-  if (volume.ok() && !found.left_out.empty()) {
-    volume->remarks.push_back(
-        absl::StrCat("left out, because they are no label files: ", absl::StrJoin(found.left_out, ", ")));
-  }
-  return volume;
+  return labels.Add(file, *std::move(volume), choice);
 }
 
 }  // namespace
@@ -88,23 +67,28 @@ absl::StatusOr<LabelVolume> ParseLabelArchive(const std::string& name, std::stri
   if (archive_read_open_memory(reader.get(), bytes.data(), bytes.size()) != ARCHIVE_OK) {
     return Damaged(name, reader.get());
   }
-  ArchivedLabels found;
+  LabelSet labels;
   archive_entry* entry = nullptr;
   std::size_t left = kMostBytes;
   int code = ARCHIVE_OK, entries = 0;
   while ((code = archive_read_next_header(reader.get(), &entry)) == ARCHIVE_OK) {
     if (++entries > kMostEntries) {
-      return absl::ResourceExhaustedError(absl::StrCat(name, ": has more than ", kMostEntries, " files"));
+      return absl::ResourceExhaustedError(
+          absl::StrCat(name, ": has more than ", kMostEntries, " files; pack only label files"));
     }
     const char* path = archive_entry_pathname(entry);
     if (path == nullptr || archive_entry_filetype(entry) != AE_IFREG) continue;
     const std::string file = path;
     std::string content;
     if (absl::Status status = ReadEntry(name, reader.get(), left, content); !status.ok()) return status;
-    if (absl::Status status = AddFile(file, content, choice, max_voxels, found); !status.ok()) return status;
+    if (absl::Status status = AddFile(file, content, choice, max_voxels, labels); !status.ok()) return status;
   }
   if (code != ARCHIVE_EOF) return Damaged(name, reader.get());
-  return FinishSet(name, std::move(found));
+  if (labels.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": has no label file: pack NIfTI, DICOM Segmentation or RT Structure Set"));
+  }
+  return labels.Finish();
 }
 
 }  // namespace phrenic::imaging

@@ -16,10 +16,10 @@ bool IsArchive(std::string_view bytes);
 
 // Reads every label file of an archive (label_file.h) as one volume (label_set.h); `choice` selects maps, as ReadMaps.
 // Files of other formats are left out, and a remark names them; archives in the archive are not read. INVALID_ARGUMENT
-// "name: ..." for a damaged archive, or one without label files; RESOURCE_EXHAUSTED for more voxels a file, or 4 GiB of
-// files; the errors of ParseLabels and LabelSet. Thread-safe.
-absl::StatusOr<LabelVolume> ParseLabelArchive(const std::string& name, std::string_view bytes, const std::string& choice,
-                                              std::size_t max_voxels = kMaxVoxels);
+// "name: ..." for a damaged archive, or one without label files; RESOURCE_EXHAUSTED for a file of more voxels, 4 GiB
+// of files or 5,000 entries; the errors of ParseLabels and LabelSet. Thread-safe.
+absl::StatusOr<LabelVolume> ParseLabelArchive(const std::string& name, std::string_view bytes,
+                                              const std::string& choice, std::size_t max_voxels = kMaxVoxels);
 
 }  // namespace phrenic::imaging
 

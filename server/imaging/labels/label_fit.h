@@ -1,4 +1,4 @@
-// Which program's map the numbers of a label volume obey.
+// Finds the label map of the program that numbered a label volume.
 #ifndef PHRENIC_SERVER_IMAGING_LABELS_LABEL_FIT_H_
 #define PHRENIC_SERVER_IMAGING_LABELS_LABEL_FIT_H_
 
@@ -12,8 +12,8 @@
 
 namespace phrenic::imaging {
 
-// How well a map's numbers agree with a volume. A label agrees if its volume is that of its structure in some person,
-// it lies above the next rib or vertebra, and a left one lies left of the right one of its number.
+// How well a map's numbers agree with a volume. A label agrees if its volume [ml] is within the range of its structure
+// in people, it lies above the next rib or vertebra, and a left one lies left of the right one of its number.
 struct MapFit {
   std::string name;  // "vista3d"
   v1::LabelMap map;

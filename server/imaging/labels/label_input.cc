@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "server/imaging/label_file.h"
 #include "server/imaging/labels/label_archive.h"
 #include "server/imaging/labels/label_map.h"
@@ -19,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the map whose names count: that of all programs, or one's own.
+// Returns the map whose names count: the common one, or the user's own.
 absl::StatusOr<v1::LabelMap> NamesFor(const std::string& choice) {
   const absl::StatusOr<v1::LabelMap> names = ReadLabelMap(kNamesMap);
   if (!names.ok() || choice.empty()) return names.ok() ? WithCommonNames(*names) : names;
@@ -28,7 +27,7 @@ absl::StatusOr<v1::LabelMap> NamesFor(const std::string& choice) {
   return chosen->front().map.tool().empty() ? chosen->front().map : WithCommonNames(*names);
 }
 
-// Adds what the volume's labels mean, by their names, else by a map of numbers.
+// Adds the meanings of the volume's labels: by their names, else by a map of numbers.
 absl::StatusOr<LabelInput> WithMeanings(std::string_view name, LabelVolume volume, const std::string& choice) {
   LabelInput input;
   input.volume = std::move(volume);
@@ -82,30 +81,25 @@ class SetReader {
       return absl::NotFoundError(absl::StrCat("cannot read the label file ", path, "; check the path"));
     }
     if (!named && !IsLabelFile(*bytes)) {
-      left_out_.push_back(path);
+      labels_.LeaveOut(path);
       return absl::OkStatus();
     }
     absl::StatusOr<LabelVolume> volume = ParseLabels(path, *bytes);
     if (!volume.ok()) return volume.status();
-    ++files_;
     return labels_.Add(path, *std::move(volume), ChoiceOf(path));
   }
 
   absl::StatusOr<LabelVolume> Finish(const std::string& first) {
-    if (files_ == 0) {
+    if (labels_.empty()) {
       return absl::NotFoundError(
           absl::StrCat(first, ": has no label file: NIfTI, DICOM Segmentation or RT Structure Set; check the path"));
     }
     for (const auto& [file, map] : choices_.by_file) {
       if (used_.contains(file)) continue;
-      return absl::InvalidArgumentError(absl::StrCat(file, "=", map, ": no label file of this name was given"));
+      return absl::InvalidArgumentError(
+          absl::StrCat(file, "=", map, ": no label file of this name was given; check the name"));
     }
-    absl::StatusOr<LabelVolume> volume = labels_.Finish();
-    if (volume.ok() && !left_out_.empty()) {
-      volume->remarks.push_back(
-          absl::StrCat("left out, because they are no label files: ", absl::StrJoin(left_out_, ", ")));
-    }
-    return volume;
+    return labels_.Finish();
   }
 
  private:
@@ -121,9 +115,7 @@ class SetReader {
 
   const MapChoices& choices_;
   LabelSet labels_;
-  std::vector<std::string> left_out_;
   std::set<std::string> used_;  // of choices_.by_file
-  int files_ = 0;
 };
 
 }  // namespace

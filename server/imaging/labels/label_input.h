@@ -28,13 +28,13 @@ struct LabelInput {
 absl::StatusOr<LabelInput> ParseLabelInput(std::string_view name, std::string_view bytes, const std::string& choice,
                                            std::size_t max_voxels = kMaxVoxels);
 
-// Which maps files have; each as ReadMaps.
+// The maps of files; each as `choice` of ReadMaps.
 struct MapChoices {
   std::string all;
   std::map<std::string, std::string> by_file;  // by path, or name without folders; they count before `all`
 };
 
-// Reads one file, or all label files of several paths and of folders among them, with the folders in these. NOT_FOUND
+// Reads one file, or all label files of several paths; folders are read with their subfolders. NOT_FOUND
 // names a path that cannot be read, or a folder without label files; INVALID_ARGUMENT a file of `choices` that is not
 // among them; RESOURCE_EXHAUSTED for a folder of more than 5,000 files; the errors of ParseLabelInput and LabelSet.
 absl::StatusOr<LabelInput> ReadLabelInput(const std::vector<std::string>& paths, const MapChoices& choices);

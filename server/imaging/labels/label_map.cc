@@ -81,9 +81,9 @@ absl::StatusOr<v1::LabelMap> ReadLabelMap(const std::string& name_or_file) {
   const std::string path = is_file ? name_or_file : absl::StrCat(MapsFolder(), "/", name_or_file, kEnding);
   const std::optional<std::string> text = ReadBytes(path);
   if (!text.has_value()) {
-    return absl::NotFoundError(absl::StrCat("cannot read the label map ", path, "; there are ",
-                                            absl::StrJoin(InstalledLabelMaps(), ", "),
-                                            ", and files of one's own: NAME.textproto"));
+    return absl::NotFoundError(absl::StrCat("cannot read the label map ", path,
+                                            "; give a file NAME.textproto, or one of ",
+                                            absl::StrJoin(InstalledLabelMaps(), ", ")));
   }
   v1::LabelMap map;
   if (absl::Status status = schema::ParseText(path, *text, &map); !status.ok()) return status;
@@ -126,7 +126,7 @@ v1::LabelMap Resolve(const v1::LabelMap& map, const LabelVolume& volume, std::ve
 }
 
 std::string LabelOfFile(const v1::LabelMap& map, std::string_view file_name) {
-  constexpr std::size_t kMostWords = 40;  // of a name that is looked at
+  constexpr std::size_t kMostWords = 40;  // of a name that are compared
   const KnownNames known(map);
   std::vector<std::string> words = PlainWords(file_name);
   words.resize(std::min(words.size(), kMostWords));

@@ -90,7 +90,8 @@ absl::StatusOr<std::map<Label, Label>> LabelSet::Number(const std::string& file,
   std::map<Label, Label> numbers;
   for (const auto& [label, extent] : Extents(volume)) {
     if (entries_.size() >= kMostNumbers) {
-      return absl::ResourceExhaustedError(absl::StrCat(file, ": the files have more than ", kMostNumbers, " labels"));
+      return absl::ResourceExhaustedError(
+          absl::StrCat(file, ": the files have more than ", kMostNumbers, " labels; leave files out"));
     }
     const auto name = volume.names.find(label);
     Entry entry = {file, "", extent.voxels};
@@ -157,7 +158,8 @@ void LabelSet::CountHidden(const Shared& shared) {
 
 absl::Status LabelSet::Add(const std::string& name, LabelVolume volume, const std::string& choice) {
   if (++files_ > kMostLabelFiles) {
-    return absl::ResourceExhaustedError(absl::StrCat("there are more than ", kMostLabelFiles, " label files"));
+    return absl::ResourceExhaustedError(
+        absl::StrCat("there are more than ", kMostLabelFiles, " label files; give those of one patient"));
   }
   if (first_.empty()) {
     first_ = name;
@@ -205,10 +207,14 @@ void LabelSet::DropHidden() {
 }
 
 absl::StatusOr<LabelVolume> LabelSet::Finish() {
-  if (first_.empty()) return absl::InvalidArgumentError("there is no label file");
+  if (empty()) return absl::InvalidArgumentError("there is no label file");
   DropHidden();
   if (!unknown_.empty()) {
     united_.remarks.push_back(absl::StrCat("not known by their names or numbers: ", absl::StrJoin(unknown_, ", ")));
+  }
+  if (!left_out_.empty()) {
+    united_.remarks.push_back(
+        absl::StrCat("left out, because they are not label files: ", absl::StrJoin(left_out_, ", ")));
   }
   return std::move(united_);
 }

@@ -24,8 +24,12 @@ class LabelSet {
   // first file's, or a structure is in another file too with other voxels (Dice below 0.8); RESOURCE_EXHAUSTED for
   // more than kMostLabelFiles, or 65,535 labels; the errors of ReadMaps.
   absl::Status Add(const std::string& name, LabelVolume volume, const std::string& choice);
-  // Returns the volume; its remarks name the files' maps, and labels that others hide or that are in two files.
-  // INVALID_ARGUMENT if no file was added. Call it once, last.
+  // Notes a file that is not a label file.
+  void LeaveOut(const std::string& name) { left_out_.push_back(name); }
+  // True if no file was added.
+  bool empty() const { return files_ == 0; }
+  // Returns the volume; its remarks name the files' maps, files that were left out, and labels that others hide or that
+  // are in two files. INVALID_ARGUMENT if no file was added. Call it once, last.
   absl::StatusOr<LabelVolume> Finish();
 
  private:
@@ -54,6 +58,7 @@ class LabelSet {
   std::vector<Entry> entries_;  // by number - 1
   std::size_t files_ = 0;
   std::vector<std::string> unknown_;  // files that name no known structure
+  std::vector<std::string> left_out_;
 };
 
 }  // namespace phrenic::imaging

@@ -20,7 +20,7 @@ using Findings = std::vector<v1::ReadinessFinding>;
 
 constexpr auto kCare = v1::READINESS_VERDICT_USABLE_WITH_CARE, kRefuse = v1::READINESS_VERDICT_NOT_USABLE;
 
-// What a finding says to programs.
+// A finding in the form that programs read.
 struct Facts {
   v1::FindingKind kind;
   std::vector<std::string> parts = {};
@@ -71,7 +71,7 @@ bool IsFilled(const v1::PatientReport& report, const std::string& name) {
   return std::find(parts.begin(), parts.end(), name) != parts.end();
 }
 
-// Filled parts are the template's: care at best, whatever else is seen.
+// A volume with filled parts is never better than usable with care.
 void FindFilled(const v1::TemplateFill& fill, Findings& findings) {
   constexpr double kMostOff = 15;  // residual of the template's registration [mm]
   if (fill.parts().empty()) return;

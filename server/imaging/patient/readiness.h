@@ -16,8 +16,8 @@ namespace phrenic::imaging {
 //   cut lung            a lung that the border cuts over more than 2 cm^2; not usable above 20
 //   cut ribs            ribs that the border cuts; not usable from 8
 //   missing ribs        of ribs 1 to 10 of both sides, neither seen nor filled; not usable from 7
-//   filled parts        from the template: never better than with care; not usable if it is registered to worse than
-//                       15 mm
+//   filled parts        from the template: never better than with care; not usable if the residual of its registration
+//                       exceeds 15 mm
 //   missing organs      heart, liver, or both stomach and spleen, unless the diaphragm has a label; not usable if all
 //   extrapolated sheet  more than 25 % of the sheet; not usable above 50 %
 //   axes of ribs        necks whose angle to the midsagittal plane is outside 25 to 90 degrees; not usable from a

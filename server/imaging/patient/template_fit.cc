@@ -66,7 +66,7 @@ void AddLandmarks(const PartExtent& generated, const PartExtent& placed, const E
   landmarks.push_back({generated.high, placed.high, weight});
 }
 
-// What of the person a part of the template is compared with.
+// The parts of the volume that one part of the template is compared with.
 struct Counterpart {
   v1::Anatomy anatomy;
   std::vector<const Part*> parts;
@@ -164,8 +164,7 @@ absl::StatusOr<TemplateFit> FitTemplate(const LabelVolume& volume, const std::ve
   const bool plausible = (fit.scale.array() >= kLeast && fit.scale.array() <= kMost).all();
   if (plausible) return fit;
   return absl::FailedPreconditionError(absl::StrFormat(
-      "the template would be scaled by %.2f, %.2f and %.2f along x, y and z, and no person is so: check "
-      "the label map",
+      "the template would be scaled by %.2f, %.2f and %.2f along x, y and z, which no person has: check the label map",
       fit.scale.x(), fit.scale.y(), fit.scale.z()));
 }
 

@@ -21,9 +21,9 @@ struct TemplateFit {
 
 // Fits by weighted least squares to landmarks of each part that the template has too and the border of the volume does
 // not cut: the least, the mean and the greatest coordinates of a rib and of the lung of a side, the mean of a vertebra.
-// Heights of lungs, which depend on the breath, count for less, unless `soft`: then both lungs alone count, if they are
-// there. FAILED_PRECONDITION if there are neither both lungs nor four ribs of each side, or a scale is not between 0.5
-// and 2: the parts are not those of a thorax.
+// Heights of lungs, which depend on the breath, have a smaller weight. With `soft`, only the lungs count if there are
+// two. FAILED_PRECONDITION if there are neither two lungs nor four ribs of each side, or a scale is not between 0.5 and
+// 2: the parts are not those of a thorax. Pure function, thread-safe.
 absl::StatusOr<TemplateFit> FitTemplate(const LabelVolume& volume, const std::vector<Part>& parts, bool soft);
 
 }  // namespace phrenic::imaging

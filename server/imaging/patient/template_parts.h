@@ -1,4 +1,4 @@
-// Fills what a label volume does not show of a thorax from the generated one, the template.
+// Fills missing parts of a thorax in a label volume from the generated thorax, the template.
 #ifndef PHRENIC_SERVER_IMAGING_PATIENT_TEMPLATE_PARTS_H_
 #define PHRENIC_SERVER_IMAGING_PATIENT_TEMPLATE_PARTS_H_
 
@@ -23,11 +23,11 @@ struct FilledParts {
 // cartilages if there are none and fewer than half of the ribs are seen; and the heart if it has no label and the
 // diaphragm has none. Bones lie where FitTemplate puts them; of lungs and heart, what is seen of other parts is taken
 // away, and the largest component is kept. Nothing is filled, and the report says why, if the template cannot be
-// registered. `fit`, if not null, replaces the registration.
+// registered. `fit`, if not null, replaces the registration. Thread-safe.
 FilledParts FillFromTemplate(const LabelVolume& volume, std::vector<Part> parts, const TemplateFit* fit = nullptr);
 
 // Adds the region kFromTemplate to a sheet [m]: its vertices within 15 mm of a filled part that are nearer to it than
-// to any part that was seen. Returns their share of the vertices.
+// to any part that was seen. Returns their share of the vertices [1]. Thread-safe.
 double MarkFilled(const FilledParts& filled, Mesh& sheet);
 
 }  // namespace phrenic::imaging

@@ -1,4 +1,4 @@
-// Where down is in each posture.
+// Postures, and the direction of gravity in each of them.
 #ifndef PHRENIC_SERVER_MECHANICS_BREATHING_POSTURE_H_
 #define PHRENIC_SERVER_MECHANICS_BREATHING_POSTURE_H_
 
@@ -9,11 +9,12 @@
 
 namespace phrenic {
 
-// All that a person can take.
+// Every posture but POSTURE_UNSPECIFIED.
 inline constexpr std::array<v1::Posture, 5> kPostures = {v1::POSTURE_SUPINE, v1::POSTURE_UPRIGHT, v1::POSTURE_PRONE,
                                                          v1::POSTURE_RIGHT_SIDE, v1::POSTURE_LEFT_SIDE};
 
-// Returns a vector along gravity in a posture, in LPS axes, as long as the one in the supine posture.
+// Returns a vector along gravity in a posture, in LPS axes, as long as `supine`, the one in the supine
+// posture. Pure function.
 inline Eigen::Vector3d DownIn(v1::Posture posture, const Eigen::Vector3d& supine) {
   switch (posture) {
     case v1::POSTURE_UPRIGHT:

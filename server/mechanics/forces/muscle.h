@@ -9,9 +9,10 @@
 // a side follows the live parameters diaphragm_activation breath_force times the breath's signal where positive, times
 // right_activation or left_activation, with a time constant; muscle_strength scales its force; elasticity scales
 // stiffnesses, not tensions. With balanced_at_rest the resting tensions are chosen to hold the other forces at rest
-// (muscle_prestress.h), and a constant load L holds what they leave. Where an abdomen has a weight, with d down at rest and
-// e in a posture, unit vectors, what of the load lies along d carries that weight, and goes with it:
-//   L(posture) = L - (1 - d.e) (L.d) d.
+// (muscle_prestress.h), and a constant load L balances what they leave. If an abdomen has a weight, the part of L along
+// that weight's direction d at rest carries it, and scales with the weight's component along d in a posture, where its
+// direction is e (unit vectors):
+//   L(posture) = L - (1 - d.e) (L.d) d  [N].
 //
 // Energy is that at fixed activation and rates. The stiffness leaves out negative terms.
 #ifndef PHRENIC_SERVER_MECHANICS_FORCES_MUSCLE_H_
@@ -62,9 +63,10 @@ class Muscle final : public Force {
   std::span<const Output> outputs() const override;
   double Read(size_t output, const EvalContext& at) const override;
 
-  // The constant load that balances the others at rest, 3 x the body's vertices [N]; no columns unless balanced at rest.
+  // The constant load that balances the others at rest, 3 x the body's vertices [N]; no columns unless balanced at
+  // rest.
   const Points& rest_load() const { return rest_load_; }
-  // That in a posture.
+  // Returns the load in a posture [N], as the header says. The reference is valid as long as the force.
   const Points& LoadIn(v1::Posture posture) const;
   const std::vector<MuscleTriangle>& triangles() const { return triangles_; }
 
@@ -101,7 +103,7 @@ class Muscle final : public Force {
   int origin_ = 0;             // the vertex that positions are relative to in single precision
   Layout layout_;
   Points rest_load_;  // 3 x the body's vertices [N]; no columns unless balanced at rest
-  std::array<Points, kPostures.size()> postural_loads_;  // as rest_load_; no columns where they are the same
+  std::array<Points, kPostures.size()> postural_loads_;  // by kPostures; no columns where it equals rest_load_
 };
 
 }  // namespace phrenic

@@ -10,12 +10,12 @@
 // of the diaphragm the vertical part to degree 5 and the horizontal one to degree 2 in x and y; of the wall all parts
 // to degree 3; of the mediastinum a sideways one to degree 1 in x and y and, at the root, the vertical one to degree 1
 // in z; of each also a uniform one along the normal, so that the fit sweeps the volume that g does. These are 101
-// candidates, which P fits to g by area-weighted least squares. Of their responses, and that to the
-// pressure, under all weights, those combinations are kept that move the tissue most: the leading eigenvectors of the
-// Gram matrix, until what is left is below kLeftOut of the mean square, at most kMostShapes. What a weight's response
-// is in these shapes is again a least-squares fit.
+// candidates, which P fits to g by area-weighted least squares. The shapes are the combinations of their responses, and
+// of that to the pressure, under all weights, that move the tissue most: the leading eigenvectors of the Gram matrix,
+// until the rest is below kLeftOut of the mean square, at most kMostShapes. A weight's responses are fitted to the
+// shapes by least squares again.
 //
-// What is lost is what is not smooth: tests/physiology/live_lungs_test.cc states the error against the full solution.
+// Motion that is not smooth is lost: tests/physiology/live_lungs_test.cc states the error against the full solution.
 #ifndef PHRENIC_SERVER_MECHANICS_LUNGS_LUNG_RESPONSES_H_
 #define PHRENIC_SERVER_MECHANICS_LUNGS_LUNG_RESPONSES_H_
 

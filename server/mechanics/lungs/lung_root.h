@@ -16,6 +16,7 @@ namespace phrenic {
 inline constexpr double kHilumHeight = 0.54, kHilumHalfHeight = 0.16;  // zeta [1]
 inline constexpr double kHilumDepth = 0.2, kHilumHalfDepth = 0.25;     // eta [1]
 
+// Thread-safe for reading.
 struct LungRoot {
   double outwards = 0;      // +1 of a left lung, -1 of a right one; 0: the lung has no root
   Eigen::AlignedBox3d box;  // of the whole lung, also of a lobe's [m]

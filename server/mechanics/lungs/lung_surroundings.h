@@ -14,7 +14,7 @@
 
 namespace phrenic {
 
-// How the mediastinum moves, relative to rest: it is stretched evenly between its ends.
+// Motion of the mediastinum relative to rest: it is stretched evenly between its ends.
 struct MediastinalMotion {
   double narrowing = 0;        // towards the midline, of its width [1]
   double descent = 0;          // of its lower end [m]; the upper one stays

@@ -26,7 +26,8 @@ absl::Status CheckElasticity(const LungElasticity& e) {
     return absl::InvalidArgumentError("the contact of a lung has a stiffness of 0.001 to 1e6 moduli a metre");
   }
   if (!(e.weight.rise.norm() <= 20) || !IsIn(e.weight.room, 0, 100)) {
-    return absl::InvalidArgumentError("the modulus of a lung rises by up to 20 a metre, and its room is 0 to 100");
+    return absl::InvalidArgumentError(
+        "the weight of a lung raises its modulus by at most e^20 a metre, and its room is 0 to 100");
   }
   if (!IsIn(e.tangential, 0, 1e6)) {
     return absl::InvalidArgumentError("a lung's stiffness along its surface is 0 to 1e6 moduli a metre");

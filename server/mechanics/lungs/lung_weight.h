@@ -23,6 +23,7 @@ namespace phrenic {
 
 inline constexpr double kLungDensity = 300;  // [kg/m^3]
 
+// Thread-safe for reading.
 struct LungWeight {
   Eigen::Vector3d rise = Eigen::Vector3d::Zero();    // gradient of s, upwards [1/m]; 0: a lung without weight
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  // of the lungs at rest [m]
@@ -33,7 +34,7 @@ struct LungWeight {
 };
 
 // Returns the weight of lungs of a volume at rest [m^3], air and tissue of both, about their middle. `down` is a unit
-// vector, and every field of `lungs` is set.
+// vector, and every field of `lungs` is set. Pure function.
 LungWeight WeightOfLungs(const v1::LungPair& lungs, double volume, const Eigen::Vector3d& middle,
                          const Eigen::Vector3d& down);
 

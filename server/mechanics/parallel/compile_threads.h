@@ -13,12 +13,12 @@ namespace phrenic {
 // Thread-safe.
 void SetCompileThreads(int threads);
 int CompileThreads();
-// Sets what each thread beside the caller does first: a server lowers its priority, so that a compile takes no time
-// from sessions that play. Initially nothing. Thread-safe.
+// Sets a function that each thread except the caller's calls first: a server lowers the thread's priority, so that a
+// compile does not slow sessions that play. Initially nothing. Thread-safe.
 void SetCompileThreadStart(void (*start)());
 
 // Calls work(part) once for each part from 0 to parts - 1, in any order, on the caller and on threads that end before
-// it returns. A caller whose parts write to places of their own gets the same bits from any number of threads.
+// it returns. The result is the same, bit for bit, for any number of threads if the parts write to separate memory.
 // Thread-safe.
 void ForEachPart(std::int64_t parts, absl::FunctionRef<void(std::int64_t)> work);
 // The same, but leaves out the parts that have not begun once stopped() is true, which the caller's thread alone asks,

@@ -1,5 +1,5 @@
 // SIMD kernel of PlaceOnSheet. Google Highway compiles it for several instruction sets and selects the best at run
-// time; all give the same numbers.
+// time; all give the same numbers. Thread-safe.
 #ifndef PHRENIC_SERVER_MECHANICS_SKINNING_SHEET_POINTS_KERNEL_H_
 #define PHRENIC_SERVER_MECHANICS_SKINNING_SHEET_POINTS_KERNEL_H_
 
@@ -9,8 +9,8 @@
 
 namespace phrenic {
 
-// What a vertex of the middle surface passes on, or its time derivative: position [m], area stretch, normal and
-// padding. Before they are complete, the sums over its triangles take the places of stretch and normal.
+// A vertex of the middle surface, as the points bound to it need it, or its time derivative: position [m], area stretch
+// [1], normal and padding. While the nodes are computed, sums over the triangles take the places of stretch and normal.
 struct alignas(64) SheetNode {
   double numbers[8];
   auto position() { return Eigen::Map<Eigen::Vector3d>(numbers); }

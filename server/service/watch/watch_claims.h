@@ -1,4 +1,4 @@
-// Who takes the messages of which WatchFrames call itself, instead of over gRPC.
+// Claims of WatchFrames calls whose messages the web gateway takes from the publisher, without gRPC.
 #ifndef PHRENIC_SERVER_SERVICE_WATCH_WATCH_CLAIMS_H_
 #define PHRENIC_SERVER_SERVICE_WATCH_WATCH_CLAIMS_H_
 
@@ -16,9 +16,9 @@ namespace phrenic::service {
 class ClaimedWatch;
 
 // Thread-safe. The server has one. The web gateway claims the watch of a call before it makes the call, which carries
-// the claim's key as kWatchClaimKey; FrameService gives the watch. A key is a random secret of 128 bits that never
-// leaves the process but to other servers of a cluster, so no client can claim another's watch; a key that this server
-// has not made counts as none, and the messages then go over gRPC.
+// the claim's key as kWatchClaimKey; FrameService gives the watch. A key is a random secret of 128 bits, sent to no one
+// but other servers of the cluster, so no client can claim another's watch. A key that this server did not make has no
+// effect: the messages then go over gRPC.
 class WatchClaims {
  public:
   // Called once, on a thread of the service, with the lock held: it must not block or call the claims.

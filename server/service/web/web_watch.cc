@@ -32,7 +32,7 @@ void WebWatch::Accept(std::shared_ptr<ClaimedWatch> watch) {
   Post(wake_);
 }
 
-// What becomes ready after `posted` is reset posts again.
+// Posts `ready` unless it is posted already. A message that becomes ready after `posted` is reset posts it again.
 void WebWatch::Post(const std::shared_ptr<Wake>& wake) {
   if (wake->posted.exchange(true)) return;
   boost::asio::post(wake->strand, [wake] {

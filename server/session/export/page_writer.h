@@ -23,8 +23,8 @@ absl::StatusOr<std::string> ReadPageTemplate(const std::string& path);
 
 // Holds the frames in memory, encoded as viewers get them (CODEC_PREDICTED) within 0.1, 0.2, 0.5 and 1 mm, and writes
 // the page at the end with the finest that gives at most kPageBytes; with those of 1 mm if none does. The page contains
-// a v1::OfflineMotion; equal runs give equal bytes. RESOURCE_EXHAUSTED if the
-// frames within 1 mm have more than 64 MiB; INTERNAL if a number is not finite.
+// a v1::OfflineMotion; equal runs give equal bytes. RESOURCE_EXHAUSTED if the frames within 1 mm have more than 64 MiB;
+// INTERNAL if a number is not finite.
 class PageWriter final : public MotionWriter {
  public:
   // `bodies` are numbers in the model, ascending; the page numbers them from 0. `page` is the template.

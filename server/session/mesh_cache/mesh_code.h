@@ -4,9 +4,9 @@
 
 namespace phrenic::session {
 
-// SHA-256 of the libraries anatomy, mesh and schema, which completes a physique, in hexadecimal: all programs of a
-// build have the same, and those of another version, compiler or option another one. Written by
-// server/session/mesh_cache/mesh_code.cmake when these are linked.
+// SHA-256, in hexadecimal, of the libraries anatomy, mesh and schema (which completes a physique). It is equal in all
+// programs of a build and differs between versions, compilers and options. Written by
+// server/session/mesh_cache/mesh_code.cmake when these libraries are linked.
 extern const char kMeshCode[];
 
 }  // namespace phrenic::session

@@ -40,7 +40,7 @@ absl::StatusOr<imaging::LabelInput> ReadLabelUpload(const Uploads::Held& labels,
   const absl::StatusOr<std::vector<imaging::MapFit>> maps =
       plain ? imaging::ReadMaps(map) : absl::NotFoundError("a name has letters, digits and \"-\"");
   if (!maps.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat("map: there is no label map of this name; there are ",
+    return absl::InvalidArgumentError(absl::StrCat("map: there is no label map of this name; give one of ",
                                                    absl::StrJoin(imaging::InstalledLabelMaps(), ", ")));
   }
   const absl::StatusOr<std::string> bytes = labels.Bytes();

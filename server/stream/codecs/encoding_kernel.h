@@ -1,5 +1,5 @@
 // SIMD kernels of PredictedCodec::Encode and NeighbourPredictor::Residuals. Google Highway compiles them for several
-// instruction sets and selects the best at run time; all give the same numbers.
+// instruction sets and selects the best at run time; all give the same numbers. Thread-safe.
 #ifndef PHRENIC_SERVER_STREAM_CODECS_ENCODING_KERNEL_H_
 #define PHRENIC_SERVER_STREAM_CODECS_ENCODING_KERNEL_H_
 
@@ -10,7 +10,7 @@
 
 namespace phrenic::stream {
 
-// Three per place of NeighbourWeights::order.
+// Displacements from rest in steps of the grid: x y z of each place of NeighbourWeights::order.
 using Steps = std::vector<std::int32_t>;
 
 inline constexpr double kFurthest = 1 << 30;  // [steps] that are encoded

@@ -1,7 +1,8 @@
-// What viewers get and what they cost the server, held against the aims of its design, over real sockets:
-// streaming_bench [fanout] [stalled] [lines] [stepping] [--seconds S] [--viewers N]... [--web]
-// [--phrenicd PROGRAM]... The server is a process of its
-// own, and its CPU time is read from outside; times of arrival depend on what else the machine does.
+// Measures what viewers receive over real sockets and what they cost the server, beside the aims of its design:
+//   streaming_bench [fanout] [stalled] [lines] [stepping] [--seconds S] [--viewers N]... [--web] [--phrenicd
+//   PROGRAM]...
+// The server is a process of its own, whose CPU time is read from outside; times of arrival depend on the machine's
+// load.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 

@@ -12,13 +12,13 @@
 
 namespace phrenic::bench {
 
-// Carries what comes from the server at its rate, all connections together, and the other way as fast as it comes.
+// Forwards bytes from the server at a limited rate, shared by all connections, and bytes to the server at once.
 class ThinLine {
  public:
   ThinLine(int server_port, double bytes_per_second);
   ~ThinLine();
   int port() const { return port_; }
-  // Carries nothing any more, as a line that was cut: neither end is told.
+  // Carries nothing from now on, as a line that was cut; neither end is notified.
   void Freeze() { frozen_ = true; }
 
  private:

@@ -12,8 +12,9 @@ import { launchBrowser } from "../browser";
 import { nodeApi } from "../node_api";
 import { Server } from "../server";
 
-// Measures decoders on frames of a breathing thorax (npm run bench): back to back and 60 times a second, in Node.js and in
-// Chromium. PHRENIC_OLD names another checkout, with its viewer's packages and messages, whose decoders are measured too.
+// Measures decoders on frames of a breathing thorax (npm run bench): back to back and 60 times a second, in Node.js and
+// in Chromium. PHRENIC_OLD names another checkout, with its viewer's packages and messages, whose decoders are measured
+// too.
 const codecs = { planes: Codec.PLANES, predicted: Codec.PREDICTED, basis: Codec.BASIS };
 const frameCount = 120;
 /** Bodies are watched up to this number of vertices; 0 for all. */

@@ -30,8 +30,8 @@ export interface Received {
 
 /**
  * A learning platform with one course, as 1EdTech's Security Framework 1.0, LTI 1.3, Deep Linking 2.0, Assignment and
- * Grade Services 2.0 and Names and Role Provisioning Services 2.0 have it, and a store of learning records. It shares no
- * code with the server.
+ * Grade Services 2.0 and Names and Role Provisioning Services 2.0 have it, and a store of learning records. It shares
+ * no code with the server.
  */
 export class Platform {
   readonly received: Received = { scores: [], statements: [], deepLinks: [] };

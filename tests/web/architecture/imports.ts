@@ -22,7 +22,9 @@ export function readSources(folder: string): Sources {
   return sources;
 }
 
-/** Returns the files that each file imports by a relative path: values and types, static and dynamic, and re-exports. */
+/**
+ * Returns the files that each file imports by a relative path: values and types, static and dynamic, and re-exports.
+ */
 export function importsOf(sources: Sources): Graph {
   return new Map(
     [...sources].map(([path, text]) => {

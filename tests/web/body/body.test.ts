@@ -81,7 +81,7 @@ describe("the dialog", () => {
     ready("Small woman, 1.5 m").click();
     expect(entry("height").value).toBe("1.5");
     expect(entry("chestWidth").value).toBe("");
-    expect(entry("chestWidth").placeholder).toBe("chosen");
+    expect(entry("chestWidth").placeholder).toBe("auto");
     expect(ready("Small woman, 1.5 m").ariaPressed).toBe("true");
     enter("height", "1.6");
     expect(ready("Small woman, 1.5 m").ariaPressed).toBe("false");

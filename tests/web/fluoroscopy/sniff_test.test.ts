@@ -1,7 +1,9 @@
 import { expect, test } from "vitest";
 import { SniffTest, sniffWords } from "../../../web/src/fluoroscopy/sniff_test";
 
-/** Passes breaths of 6 s to a test: a sniff of 0.5 s at each multiple, with these excursions [m]. Returns when it ended. */
+/**
+ * Passes breaths of 6 s to a test: a sniff of 0.5 s at each multiple, with these excursions [m]. Returns when it ended.
+ */
 function sniff(right: number, left: number, from = 2.5): { test: SniffTest; end: number | undefined } {
   const test = new SniffTest();
   let end: number | undefined;

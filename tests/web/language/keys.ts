@@ -146,7 +146,7 @@ function fromParameters(): string[] {
   );
 }
 
-/** Returns the titles of the ready bodies. */
+/** Returns the titles of the example bodies. */
 function fromBodies(): string[] {
   const lines = readFileSync(join(web, "../client/examples/bodies.txt"), "utf8").split("\n");
   return lines.filter((line) => line !== "" && !line.startsWith("#")).map((line) => line.split(":")[0]);

@@ -6,9 +6,6 @@ import { type ConnectionListener, type ConnectionState, SessionConnection } from
 import { download } from "../dom/download";
 import { ownStorage } from "../dom/storage";
 import { elementById } from "../dom/elements";
-import { FilmMaker, type OpenWriter } from "../film/film_maker";
-import { inPageLanguage } from "../language/page_words";
-import { recordedMotion } from "../film/recorded_motion";
 import type { DisplayedFrame, FrameBuffer } from "../frames/frame_buffer";
 import type { Frame } from "../gen/phrenic/v1/frames_pb";
 import type { CompileReport } from "../gen/phrenic/v1/report_pb";
@@ -20,7 +17,6 @@ import { ComparisonCard } from "../panels/comparison/comparison_card";
 import { distancePanel } from "../panels/comparison/distance_panel";
 import { presetComparison } from "../panels/comparison/preset_comparison";
 import { exportPanel } from "../panels/jobs/export_panel";
-import { animationRow, filmRow, takeHomeRow } from "../panels/jobs/take_home";
 import { uploadPanel } from "../panels/jobs/upload_panel";
 import { parameterSections } from "../panels/parameters/parameter_sections";
 import { GraphsPanel } from "../panels/readings/graphs";
@@ -34,7 +30,6 @@ import { encodingPanel } from "../panels/session/encoding_panel";
 import { languageMenu } from "../panels/session/language_menu";
 import { sessionButton } from "../panels/session/session_button";
 import type { SessionChooser } from "../panels/session/session_chooser";
-import { ShareDialog } from "../panels/session/share_dialog";
 import { layersPanel } from "../panels/view/layers_panel";
 import { Margins } from "../panels/view/margins";
 import { playbackPanel } from "../panels/view/playback";
@@ -56,7 +51,6 @@ import type { Clock } from "../timing/clock";
 import { Viewer } from "../viewer/viewer";
 import { drawers } from "./drawers";
 import { dropZone } from "./drop_zone";
-import { filmStage } from "./film_stage";
 import { appShortcuts } from "./app_shortcuts";
 import { Fluoroscopy } from "./fluoroscopy";
 import { stageInsets } from "./insets";
@@ -65,6 +59,7 @@ import { SceneTools } from "./scene_tools";
 import { SecondView } from "./second_view";
 import { sessionFrames } from "./session_frames";
 import { SessionNumbers } from "./session_numbers";
+import { shareDialog } from "./sharing";
 import { skipLinks } from "./skip_links";
 import { studiesSection } from "./studies_section";
 import { StudentView } from "./student_view";
@@ -73,11 +68,6 @@ import { testHook } from "./test_hook";
 /** Update intervals of texts and numbers, and of graphs [ms]. */
 const statusInterval = 200;
 const graphInterval = 100;
-
-/** The encoder is loaded with the first film. */
-const openWriter: OpenWriter = async (...of) => (await import("../film/film_writer")).FilmWriter.open(...of);
-
-const openAnimation: OpenWriter = async (...of) => (await import("../film/animated_png")).AnimatedPngWriter.open(...of);
 
 /** What the page shows, from its address. */
 export interface PageTarget {
@@ -352,26 +342,17 @@ export class App {
   }
 
   private buildHeader(): void {
-    const { controller, viewer, report } = this;
+    const { api, controller, viewer, report, tools, student, fluoroscopy, timeline } = this;
     const { open, sessionId } = this.target;
-    const photograph = async () => {
-      const picture = await viewer.capture((pen, ratio) => this.tools.paint(pen, ratio));
-      if (picture !== null) download(`${sessionId}.png`, picture);
-    };
-    const stage = filmStage(viewer, this.tools.coloring, (frame) => (this.filmed = frame));
-    const names = () => this.bodies.value.map(({ name }) => name);
-    const breath = () => recordedMotion(new Exports(this.api, sessionId), names);
-    const film = new FilmMaker(breath(), stage, openWriter);
-    const animation = FilmMaker.ofAnimations(breath(), stage, openAnimation);
-    const translated = new Exports(this.api, sessionId, undefined, inPageLanguage);
-    const rows = [takeHomeRow(translated), filmRow(film), animationRow(animation)];
-    const measured = () => this.tools.measuring.measurements.kept();
-    const share = new ShareDialog({ controller, report, open, photograph: () => void photograph(), rows, measured });
+    const photograph = () => void this.photograph();
+    const share = shareDialog({
+      ...{ api, sessionId, controller, report, viewer, tools, open, photograph },
+      names: () => this.bodies.value.map(({ name }) => name),
+      showFilmed: (frame) => (this.filmed = frame),
+    });
     const { graphs, panel } = drawers(() => this.resize(), this.secondView !== undefined);
-    const { tools, student, fluoroscopy, timeline } = this;
     const keys = appShortcuts({
-      ...{ tools, student, fluoroscopy, timeline, toggleGraphs: graphs, togglePanel: panel },
-      photograph: () => void photograph(),
+      ...{ tools, student, fluoroscopy, timeline, toggleGraphs: graphs, togglePanel: panel, photograph },
       share: () => share.show(),
       undo: () => controller.undo(),
       redo: () => controller.redo(),
@@ -388,6 +369,12 @@ export class App {
       this.connectionBadge.element,
     );
     elementById("session-slot").append(sessionButton(controller, () => void this.chooser.show()));
+  }
+
+  /** Saves a picture of the view. */
+  private async photograph(): Promise<void> {
+    const picture = await this.viewer.capture((pen, ratio) => this.tools.paint(pen, ratio));
+    if (picture !== null) download(`${this.target.sessionId}.png`, picture);
   }
 
   /** Distributes what the connection receives. */

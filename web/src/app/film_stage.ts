@@ -5,7 +5,10 @@ import type { DisplayedFrame } from "../frames/frame_buffer";
 import { pictureBackground, type Viewer } from "../viewer/viewer";
 import { t } from "../language/translate";
 
-/** Returns the viewer as the stage of a film. `show` sets the frame that the viewer's host displays; undefined: live. `coloring` is undefined on a page without colours. */
+/**
+ * Returns the viewer as the stage of a film. `show` sets the frame that the viewer's host displays; undefined: the live
+ * one. `coloring` is undefined on a page without colours.
+ */
 export function filmStage(
   viewer: Viewer,
   coloring: Coloring | undefined,

@@ -7,7 +7,10 @@ import type { Signal } from "../state/signal";
 import type { Clock } from "../timing/clock";
 import { SessionReferences } from "./session_references";
 
-/** When the graphs begin: after the first drawing, which they would delay; in a tab that is not drawn, after the start [ms]. */
+/**
+ * When the graphs begin: after the first drawing, which they would delay; in a tab that is not drawn, after the start
+ * [ms].
+ */
 const afterFirstDrawing = 500;
 const latest = 15_000;
 

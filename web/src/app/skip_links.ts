@@ -1,7 +1,9 @@
 import { elementById, make } from "../dom/elements";
 import { t } from "../language/translate";
 
-/** Returns links before all other content that move the focus to the picture and to the controls of the present view. */
+/**
+ * Returns links before all other content that move the focus to the picture and to the controls of the present view.
+ */
 export function skipLinks(): HTMLElement {
   const picture = link(t("Skip to the picture"), "view", () => elementById("view"));
   const controls = link(t("Skip to the controls"), "panel", () => {

@@ -61,7 +61,9 @@ export interface StudentParts {
   resized(): void;
 }
 
-/** The page as a class sees it: choices, three sliders, two graphs and a sentence. A button changes to the expert view. */
+/**
+ * The page as a class sees it: choices, three sliders, two graphs and a sentence. A button changes to the expert view.
+ */
 export class StudentView {
   readonly element = elementById("student");
   readonly view: Signal<PageView>;

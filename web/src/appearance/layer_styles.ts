@@ -50,8 +50,8 @@ export class LayerStyles {
   }
 
   /**
-   * Returns the streamed bodies whose positions this viewer needs, by name; empty for all. A layer that was shown once is
-   * needed from then on, so that the server encodes few selections of bodies.
+   * Returns the streamed bodies whose positions this viewer needs, by name; empty for all. A layer that was shown once
+   * is needed from then on, so that the server encodes few selections of bodies.
    */
   neededBodies(bodies: Body[]): string[] {
     const streamed = bodies.filter(({ placement }) => placement === Placement.STREAMED);

@@ -8,7 +8,7 @@ import { BodySession } from "./body_session";
 
 /** A dialog that makes the thorax of a person from height, sex, age and shape, and lets it breathe. */
 export class BodyDialog {
-  readonly element = make("dialog", { className: "chooser", id: "body", ariaLabel: t("A body by its numbers") });
+  readonly element = make("dialog", { className: "chooser", id: "body", ariaLabel: t("A body by sex, age and size") });
   private readonly body: BodySession;
   private readonly words = make("p");
   private readonly fault = make("p", { className: "fault" });
@@ -30,11 +30,11 @@ export class BodyDialog {
       t("Reset all"),
     );
     this.element.append(
-      make("header", {}, make("h2", {}, t("A body by its numbers")), close),
+      make("header", {}, make("h2", {}, t("A body by sex, age and size")), close),
       make(
         "p",
         {},
-        t("The thorax of a person: sex and age choose what you do not set. Lungs and tissues follow the size."),
+        t("The thorax of a person. Sex and age determine what you do not set; lungs and tissues scale with the size."),
       ),
       this.readyBodies(),
       ...groups.map((group) => this.section(group)),
@@ -50,7 +50,7 @@ export class BodyDialog {
   }
 
   private readyBodies(): HTMLElement {
-    const list = make("div", { className: "ready-bodies", ariaLabel: t("Ready bodies") });
+    const list = make("div", { className: "ready-bodies", ariaLabel: t("Example bodies") });
     list.setAttribute("role", "group");
     list.append(...readBodies(bodies).map((ready) => this.readyButton(ready)));
     return list;

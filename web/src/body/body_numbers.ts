@@ -11,7 +11,7 @@ export interface ReadyBody {
   numbers: BodyNumbers;
 }
 
-/** How the page shows a number, beside what the schema says of it. */
+/** How the page shows a number, in addition to the schema's range, default and help. */
 interface Shown {
   label: string;
   /** Smallest change, in the unit that is shown. */
@@ -21,7 +21,7 @@ interface Shown {
   millimetres?: boolean;
 }
 
-/** Numbers below a heading. */
+/** Numbers under one heading. */
 interface Group {
   title: string;
   numbers: Record<string, Shown>;
@@ -62,7 +62,10 @@ export const groups: Group[] = [
   },
 ];
 
-/** A control of a body's number. Its range, default and step are in the unit that is shown, `perUnit` of which is one of SI. */
+/**
+ * A control of a body's number. Its range, default and step are in the unit that is shown, `perUnit` of which is one of
+ * SI.
+ */
 export interface BodyControl {
   control: Control;
   neutral: number | undefined;
@@ -97,7 +100,10 @@ function unitOf(unit: string): string {
   return unit === "years" ? t("years") : unit.replace("deg", "°");
 }
 
-/** Reads a list of bodies: "Title: name=value name=value", a line each; "#" begins a comment. Throws Error for an unknown name. */
+/**
+ * Reads a list of bodies: "Title: name=value name=value", a line each; "#" begins a comment. Throws Error for an
+ * unknown name.
+ */
 export function readBodies(text: string): ReadyBody[] {
   const lines = text.split("\n").filter((line) => line.trim() !== "" && !line.startsWith("#"));
   return lines.map((line) => {

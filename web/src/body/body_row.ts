@@ -13,9 +13,9 @@ class ChosenNumberRow extends NumberRow {
   showUnset(control: NumberControl, neutral: number): void {
     this.show(neutral);
     this.entry.value = "";
-    this.entry.placeholder = t("chosen");
+    this.entry.placeholder = t("auto");
     this.slider.value = String(sliderPosition(control, neutral));
-    this.slider.setAttribute("aria-valuetext", t("chosen by sex and age"));
+    this.slider.setAttribute("aria-valuetext", t("determined by sex and age"));
   }
 }
 

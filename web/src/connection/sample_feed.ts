@@ -18,8 +18,8 @@ const callTimeout = 8000;
 /** Receives what a feed reads. */
 export interface SampleListener {
   /**
-   * The numbers of one sample, as a frame without positions. `present` is true for the state when reading began, which lies
-   * between two samples.
+   * The numbers of one sample, as a frame without positions. `present` is true for the state when reading began, which
+   * lies between two samples.
    */
   sample(numbers: Frame, present: boolean): void;
   /** Samples before the next one are missing: the page was too slow, or the server kept none for it. */
@@ -30,8 +30,8 @@ export interface SampleListener {
 
 /**
  * Reads the samples of a session by simulated time, all of them and in order, while the page is open: also while it is
- * hidden, or draws few pictures. It reads several times a second and holds no stream open, because browsers open only six
- * connections to a server.
+ * hidden, or draws few pictures. It reads several times a second and holds no stream open, because browsers open only
+ * six connections to a server.
  */
 export class SampleFeed {
   private readonly stopped = new AbortController();

@@ -9,8 +9,8 @@ export interface Decoding {
   /** Adds a basis that later frames refer to. */
   addBasis(basis: EncodedBasis): void;
   /**
-   * Reports the arrays of a frame to `done`, in the order of calls; undefined if the frame was dropped since decoding is
-   * slower than frames arrive; or RangeError if it does not match the scene.
+   * Reports the arrays of a frame to `done`, in the order of calls; undefined if the frame was dropped since decoding
+   * is slower than frames arrive; or RangeError if it does not match the scene.
    */
   decode(frame: Frame, done: (result: FrameArrays | RangeError | undefined) => void): void;
 }

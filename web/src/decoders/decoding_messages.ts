@@ -9,8 +9,8 @@ export type DecodingRequest =
 export type DecodingAnswer = { number: number } & (FrameArrays | { problem: string });
 
 /**
- * Returns the function that answers requests in their order, once the decoder is loaded. A request after one that failed
- * since `load` did loads again.
+ * Returns the function that answers requests in their order, once the decoder is loaded. A request after one that
+ * failed since `load` did loads again.
  */
 export function answerWith(load: () => Promise<WebAssembly.Module>) {
   let loading: Promise<WebAssembly.Module> | undefined = load();

@@ -25,7 +25,10 @@ export class FilmWriter {
     onFault.report = (error) => (this.fault = error);
   }
 
-  /** Returns a writer of films of the canvas' size with `rate` frames per second. Throws Error if the browser encodes neither VP9 nor VP8. */
+  /**
+   * Returns a writer of films of the canvas' size with `rate` frames per second. Throws Error if the browser encodes
+   * neither VP9 nor VP8.
+   */
   static async open(canvas: HTMLCanvasElement, rate: number): Promise<FilmWriter> {
     const { width, height } = canvas;
     for (const { codec, name } of codecs) {

@@ -7,8 +7,9 @@ import { closedTriangles } from "./closing";
 import { trunkOutline } from "./outline";
 
 /**
- * A closed surface that changes the attenuation coefficient by `weight` [1/m] from outside to inside. Along a ray, the sum
- * of weight times thickness over all surfaces is the line integral of the coefficient, also of surfaces in one another.
+ * A closed surface that changes the attenuation coefficient by `weight` [1/m] from outside to inside. Along a ray, the
+ * sum of weight times thickness over all surfaces is the line integral of the coefficient, also of surfaces in one
+ * another.
  */
 export interface Absorber {
   name: string;
@@ -28,7 +29,9 @@ export interface LungNow {
   density: number;
 }
 
-/** Thickness of the cortical shell of a rib [m]: with it a rib of this scene has the mean density of ribs, 1.4 g/cm^3. */
+/**
+ * Thickness of the cortical shell of a rib [m]: with it a rib of this scene has the mean density of ribs, 1.4 g/cm^3.
+ */
 const shell = 0.0012;
 
 /** What absorbs in a scene: its closed bodies with tissue, and an outline of the trunk that follows the bones. */

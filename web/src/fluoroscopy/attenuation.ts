@@ -2,8 +2,8 @@ import type { Body } from "../geometry/bodies";
 
 /**
  * Mass attenuation coefficients at 70 keV [cm^2/g]: between the values of 60 and 80 keV of Hubbell and Seltzer's tables
- * (NIST Standard Reference Database 126; tissues of ICRU Report 44), interpolated in both logarithms. The server has the same numbers
- * in `server/fluoroscopy/attenuation.cc`.
+ * (NIST Standard Reference Database 126; tissues of ICRU Report 44), interpolated in both logarithms. The server has
+ * the same numbers in `server/fluoroscopy/attenuation.cc`.
  */
 const perMass = {
   cortical: 0.2616,
@@ -50,7 +50,10 @@ export interface Material {
   coefficient: number;
 }
 
-/** The materials; the densities of whole bones are those of ICRU Report 46 (Woodard and White, Br J Radiol 1986;59:1209). */
+/**
+ * The materials; the densities of whole bones are those of ICRU Report 46 (Woodard and White, Br J Radiol
+ * 1986;59:1209).
+ */
 export const materials = {
   wall: { words: "between the structures: half muscle, half fat", coefficient: (soft + adipose) / 2 },
   cortical: { words: "shell of a rib, 1.2 mm: cortical bone", coefficient: linear(perMass.cortical, 1.92) },

@@ -2,7 +2,9 @@ type Vector = [number, number, number];
 
 /** Where a C-arm stands. */
 export interface CArm {
-  /** Angle of the detector to the patient's left [degrees]: positive LAO, negative RAO; 0 PA, 180 AP, 90 left lateral. */
+  /**
+   * Angle of the detector to the patient's left [degrees]: positive LAO, negative RAO; 0 PA, 180 AP, 90 left lateral.
+   */
   lao: number;
   /** Angle of the detector towards the head [degrees]: positive cranial, negative caudal. */
   cranial: number;
@@ -43,7 +45,9 @@ export function projectionOf({ lao, cranial, sourceToDetector }: CArm, isocentre
   };
 }
 
-/** True if pictures are shown mirrored: with the detector behind the patient, they are read as if facing the patient. */
+/**
+ * True if pictures are shown mirrored: with the detector behind the patient, they are read as if facing the patient.
+ */
 export function isMirrored({ lao }: CArm): boolean {
   return Math.abs(lao) > 90;
 }

@@ -1,13 +1,17 @@
 import { type Absorber, posed } from "./absorbers";
 import type { Projection } from "./c_arm";
 
-/** Vertices in the frame of the rays: x y in the picture, in pixels from its upper left corner, and z = depth + source distance [m]. */
+/**
+ * Vertices in the frame of the rays: x y in the picture, in pixels from its upper left corner, and z = depth + source
+ * distance [m].
+ */
 type Screen = Float64Array;
 
 /**
- * Returns the line integrals of the attenuation coefficient along the rays through the middles of pixels, row by row from
- * the upper left: as the graphics card computes them, on the processor. Each front face adds weight times its distance along the
- * ray, each back face subtracts it. The rule for pixels on an edge makes closed surfaces closed in the picture too.
+ * Returns the line integrals of the attenuation coefficient along the rays through the middles of pixels, row by row
+ * from the upper left: as the graphics card computes them, on the processor. Each front face adds weight times its
+ * distance along the ray, each back face subtracts it. The rule for pixels on an edge makes closed surfaces closed in
+ * the picture too.
  */
 export function projectOnProcessor(absorbers: Absorber[], at: Projection, size: number): Float32Array<ArrayBuffer> {
   const sums = new Float64Array(size * size);

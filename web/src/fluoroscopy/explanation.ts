@@ -2,7 +2,10 @@ import { make } from "../dom/elements";
 import { lungDensityAtRest, materials } from "./attenuation";
 import { decimal, fixed, t } from "../language/translate";
 
-/** Returns what the picture is made of, its numbers and their sources, and its limits. `open` names bodies that are left out. */
+/**
+ * Returns what the picture is made of, its numbers and their sources, and its limits. `open` names bodies that are left
+ * out.
+ */
 export function explanation(open: string[]): HTMLElement[] {
   const rows = Object.values(materials).map(({ words, coefficient }) => {
     return make("tr", {}, make("th", { scope: "row" }, t(words)), make("td", {}, fixed(coefficient, 1)));

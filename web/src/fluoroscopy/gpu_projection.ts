@@ -66,7 +66,10 @@ export class GpuProjection {
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
   }
 
-  /** Returns a projection that draws into the canvas, of `size` pixels each way; undefined if the browser's graphics cannot. */
+  /**
+   * Returns a projection that draws into the canvas, of `size` pixels each way; undefined if the browser's graphics
+   * cannot.
+   */
   static open(canvas: HTMLCanvasElement, size: number): GpuProjection | undefined {
     canvas.width = canvas.height = size;
     const gl = canvas.getContext("webgl2", { antialias: false, depth: false, preserveDrawingBuffer: true });

@@ -21,10 +21,10 @@ const power = 2.5;
 type Extents = [left: number, right: number, front: number, back: number];
 
 /**
- * Returns the outline of the trunk around bones, in place of the skin that the scene lacks: horizontal superellipses 20 mm
- * apart, each around the box of the bones within 100 mm of its height, smoothed, with 18 mm of tissue. Without arms,
- * shoulder blades and breasts. `server/fluoroscopy/outline.cc` computes the same. `bones` are their vertices [m],
- * `low` and `high` their heights at rest. Returns an empty surface without bones.
+ * Returns the outline of the trunk around bones, in place of the skin that the scene lacks: horizontal superellipses 20
+ * mm apart, each around the box of the bones within 100 mm of its height, smoothed, with 18 mm of tissue. Without arms,
+ * shoulder blades and breasts. `server/fluoroscopy/outline.cc` computes the same. `bones` are their vertices [m], `low`
+ * and `high` their heights at rest. Returns an empty surface without bones.
  */
 export function trunkOutline(bones: Float32Array[], low: number, high: number): ClosedSurface {
   const first = low - below;

@@ -1,6 +1,6 @@
 /**
- * Places a vertex in the picture and passes its position in the frame of the rays [m]. For a cone of rays w is the depth,
- * so that the position is interpolated linearly in space.
+ * Places a vertex in the picture and passes its position in the frame of the rays [m]. For a cone of rays w is the
+ * depth, so that the position is interpolated linearly in space.
  */
 export const sumVertex = `#version 300 es
 precision highp float;
@@ -34,8 +34,8 @@ void main() {
 }`;
 
 /**
- * Grey by the logarithm of the transmitted intensity exp(-sum), linear in the window: as film and digital detectors show
- * it. Where nothing absorbs it is black, or white with dark bones.
+ * Grey by the logarithm of the transmitted intensity exp(-sum), linear in the window: as film and digital detectors
+ * show it. Where nothing absorbs it is black, or white with dark bones.
  */
 export const displayFragment = `#version 300 es
 precision highp float;

@@ -9,7 +9,10 @@ const span = 8;
 /** Colours of the domes, as in the graphs: right and left. */
 export const domeColors = { right: "#ff9b8a", left: "#7cc7ff" };
 
-/** Returns a plot of both domes' heights above those before the sniff over the last seconds; the sniff has a grey ground. */
+/**
+ * Returns a plot of both domes' heights above those before the sniff over the last seconds; the sniff has a grey
+ * ground.
+ */
 export function sniffPlot(heights: DomeHeights[], result: SniffResult | undefined): SVGSVGElement {
   const plot = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "sniff-plot", "aria-hidden": "true" });
   const end = Math.max(span, heights.at(-1)?.time ?? 0);

@@ -7,7 +7,9 @@ export interface DomeHeights {
   left: number;
 }
 
-/** What sniffs move: the change of each dome's height [m], negative downwards, and their heights before the last one. */
+/**
+ * What sniffs move: the change of each dome's height [m], negative downwards, and their heights before the last one.
+ */
 export interface SniffResult {
   /** Time of the last sniff [s]. */
   onset: number;
@@ -30,14 +32,18 @@ const longest = 2;
 const kept = 10;
 const mostSniffs = 3;
 
-/** Waits for sniffs and measures how far they move each dome: by the largest change of height while the breath lasts. */
+/**
+ * Waits for sniffs and measures how far they move each dome: by the largest change of height while the breath lasts.
+ */
 export class SniffTest {
   readonly heights: DomeHeights[] = [];
   result: SniffResult | undefined;
   private start: number | undefined;
   private before: DomeHeights | undefined;
 
-  /** Receives every frame, in the order of time. Starts again if time goes back. Returns true when the result changes. */
+  /**
+   * Receives every frame, in the order of time. Starts again if time goes back. Returns true when the result changes.
+   */
   receive(now: DomeHeights): boolean {
     const last = this.heights.at(-1);
     if (last !== undefined && now.time <= last.time) {

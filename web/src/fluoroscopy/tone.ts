@@ -7,7 +7,9 @@ const [darkest, brightest] = [0.06, 0.98];
 /** A window has at least this width, so that a picture of one thickness is one grey. */
 const narrowest = 0.2;
 
-/** Returns the window in which nearly all rays through the trunk are grey: what radiologists set, from lung to spine. */
+/**
+ * Returns the window in which nearly all rays through the trunk are grey: what radiologists set, from lung to spine.
+ */
 export function windowOf(sums: Float32Array): { low: number; high: number } {
   const through = sums.filter((each) => each > beside).sort();
   if (through.length === 0) return { low: 0, high: 1 };

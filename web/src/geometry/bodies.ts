@@ -108,3 +108,14 @@ function transform(pose: Float32Array, [x, y, z]: [number, number, number]): [nu
     z + qw * uz + (qx * uy - qy * ux) + tz,
   ];
 }
+
+/** Returns the number of vertices of the bodies. */
+export function verticesOf(bodies: Body[]): number {
+  return bodies.reduce((sum, { rest }) => sum + rest.length / 3, 0);
+}
+
+/** Returns the bodies that the scene does not hide; all if it hides all. */
+export function shownAtFirst(bodies: Body[]): Body[] {
+  const shown = bodies.filter(({ opacity }) => opacity > 0);
+  return shown.length > 0 ? shown : bodies;
+}

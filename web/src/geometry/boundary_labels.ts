@@ -24,7 +24,8 @@ export interface LabelPlace {
 /**
  * Places labels left and right of a scene (boundary labelling, Bekos et al. 2007): a vertical line divides the points,
  * labels of one side keep the order of their points as far as possible, are `spacing` apart, and lines do not cross.
- * Returns a place for each point; undefined for points left or right of the frame and for the lightest ones if not all fit.
+ * Returns a place for each point; undefined for points left or right of the frame and for the lightest ones if not all
+ * fit.
  */
 export function placeLabels(
   anchors: readonly LabelAnchor[],

@@ -4,9 +4,9 @@ import { axesOf, type AxisPlane, outlineOf } from "./section";
 export const quadIndices = [0, 1, 2, 0, 2, 3];
 
 /**
- * Returns where a plane cuts the wall of a hollow organ: one quadrilateral for each triangle of its closed outer surface
- * that the plane crosses, from the outline inwards by the wall's thickness [m], as x y z of four corners. Triangles are
- * anticlockwise seen from outside. `shift` moves the quadrilaterals out of the plane [m].
+ * Returns where a plane cuts the wall of a hollow organ: one quadrilateral for each triangle of its closed outer
+ * surface that the plane crosses, from the outline inwards by the wall's thickness [m], as x y z of four corners.
+ * Triangles are anticlockwise seen from outside. `shift` moves the quadrilaterals out of the plane [m].
  */
 export function wallsInCut(
   positions: ArrayLike<number>,
@@ -37,8 +37,8 @@ export function wallsInCut(
 }
 
 /**
- * Returns the inside of a closed surface where a plane cuts it, as quadrilaterals `step` high [m]: x y z of four corners.
- * They follow the outline within a step, which the wall of a hollow organ covers.
+ * Returns the inside of a closed surface where a plane cuts it, as quadrilaterals `step` high [m]: x y z of four
+ * corners. They follow the outline within a step, which the wall of a hollow organ covers.
  */
 export function lumenInCut(
   positions: ArrayLike<number>,
@@ -82,7 +82,10 @@ function crossings(x: ArrayLike<number>, corners: number[], above: boolean[], ax
   return points;
 }
 
-/** Returns the unit direction within the plane that points away from the triangle's outer side; undefined if it has none. */
+/**
+ * Returns the unit direction within the plane that points away from the triangle's outer side; undefined if it has
+ * none.
+ */
 function inwardsOf(x: ArrayLike<number>, [a, b, c]: number[], axis: number): number[] | undefined {
   const u = [0, 1, 2].map((k) => x[b + k] - x[a + k]);
   const v = [0, 1, 2].map((k) => x[c + k] - x[a + k]);

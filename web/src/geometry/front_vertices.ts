@@ -24,8 +24,8 @@ interface Layer {
 }
 
 /**
- * Returns which vertices are seen, by drawing the triangles with a depth buffer of few pixels: those of the front opaque
- * surface at each pixel, and those of the front transparent one before it.
+ * Returns which vertices are seen, by drawing the triangles with a depth buffer of few pixels: those of the front
+ * opaque surface at each pixel, and those of the front transparent one before it.
  */
 export function frontVertices(surfaces: ScreenSurface[], width: number, height: number): FrontVertex[] {
   const [opaque, transparent] = [layerOf(width * height), layerOf(width * height)];

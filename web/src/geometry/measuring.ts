@@ -1,7 +1,9 @@
 /** x y z [m]. */
 type Point = readonly [number, number, number];
 
-/** The measurements that links and lessons keep, and the points that each needs; "body" is the surface of a whole body. */
+/**
+ * The measurements that links and lessons keep, and the points that each needs; "body" is the surface of a whole body.
+ */
 export const pointsOfKept = { distance: 2, angle: 3, surface: 1, body: 1 } as const;
 
 /** A measurement of vertices, each named by its body and its place at rest [m], so that it is found on another mesh. */

@@ -5,7 +5,9 @@ import { domeHeights, graphsOf, type GraphSpec, measureKey } from "./catalogue";
 import { cmH2O } from "./units";
 import { t } from "../language/translate";
 
-/** Returns the graphs of the student view: lung volume, and the height of the domes and the pressure around the lungs. */
+/**
+ * Returns the graphs of the student view: lung volume, and the height of the domes and the pressure around the lungs.
+ */
 export function studentGraphs(frame: Frame): { volume: GraphSpec | undefined; others: GraphSpec[] } {
   const all = graphsOf(frame);
   const others = [domeGraph(frame), pressureGraph(all)].filter((each) => each !== undefined);

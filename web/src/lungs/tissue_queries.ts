@@ -53,8 +53,8 @@ export class TissueQueries {
   }
 
   /**
-   * Reads the tissue unless that of this state is known, a query is running, or the scene has none. `points` are places at
-   * rest, x y z [m]; `stateKey` identifies the state.
+   * Reads the tissue unless that of this state is known, a query is running, or the scene has none. `points` are places
+   * at rest, x y z [m]; `stateKey` identifies the state.
    */
   async query(points: readonly (readonly [number, number, number])[], stateKey: string): Promise<void> {
     const question = `${stateKey} ${JSON.stringify(points)}`;

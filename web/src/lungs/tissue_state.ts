@@ -61,7 +61,9 @@ export class TissueState {
     return sum;
   }
 
-  /** Returns the place at rest of the tissue that is at a point now [m]: x - u, with u taken at x and twice improved. */
+  /**
+   * Returns the place at rest of the tissue that is at a point now [m]: x - u, with u taken at x and twice improved.
+   */
   placeOf(x: number, y: number, z: number): Place {
     const place: Place = { brick: 0, local: [0, 0, 0] };
     this.findNow(x, y, z, place, new Float64Array(8), [0, 0, 0]);

@@ -50,7 +50,10 @@ export class MotionPage {
   /** The frame of a film that is drawn; undefined while no film is made. */
   private filmed: DisplayedFrame | undefined;
 
-  /** `decoder` is the compiled decoder. Throws RangeError for a motion that is not valid, and Error if the browser has no WebGL 2. */
+  /**
+   * `decoder` is the compiled decoder. Throws RangeError for a motion that is not valid, and Error if the browser has
+   * no WebGL 2.
+   */
   constructor(
     private readonly decoder: WebAssembly.Module,
     private readonly motion: OfflineMotion,

@@ -19,7 +19,10 @@ export function breathLengthOf(of: Pick<Parameters, "breathLength"> | undefined)
   return of?.breathLength ?? 4;
 }
 
-/** Returns the effort of live parameters: with u = activation / full activation, depth (uD + uI) / 2, belly uD / (uD + uI). */
+/**
+ * Returns the effort of live parameters: with u = activation / full activation, depth (uD + uI) / 2, belly uD / (uD +
+ * uI).
+ */
 export function effortOf(
   of: Pick<Parameters, "diaphragmActivation" | "intercostalActivation" | "breathLength">,
 ): Effort {

@@ -1,9 +1,9 @@
-/** Words of structures, programs and models of which a file's name may tell what it shows. */
+/** Words in file names that say what a file shows: structures, sides, programs and models. */
 const known =
   /^(ribs?|left|right|l|r|lungs?|upper|middle|lower|lobe|vertebrae?|vertebralbody|[tl]\d{1,2}|th\d{1,2}|thoracic|lumbar|liver|spleen|stomach|heart|atrium|ventricle|myocardium|sternum|manubrium|costal|cartilages?|diaphragm|organs|cardiac|55\d|\d{1,2})$/;
 
 /**
- * Returns the words of a file's name that say what it shows, and none that may say whose it is: "rib left 7" of
+ * Returns the words of a file's name that say what it shows, and none that may identify the person: "rib left 7" of
  * "DOE^JANE_rib_left_7.nii.gz". A number counts only beside a word.
  */
 export function structureWords(fileName: string): string {

@@ -62,7 +62,7 @@ export class LabelTable {
     menu.onchange = () => this.readBy(menu.value);
     const used = tools.find(({ name }) => name === map);
     const better = used !== undefined && tools[0].agree - tools[0].differ > used.agree - used.differ;
-    const guessed = t("The labels have numbers and no names. The program is a guess by their sizes and places.");
+    const guessed = t("The labels have numbers and no names. The program was guessed from their sizes and positions.");
     const other = t("The numbers fit another program better: {0}", toolName(tools[0].title, tools[0].name));
     return [
       make("p", { className: better ? "fault" : "faint", id: "patient-guess" }, better ? other : guessed),

@@ -71,7 +71,7 @@ export class PatientDialog {
       "Lungs, ribs, vertebrae and organs of the thorax as NIfTI, DICOM Segmentation or RT Structure Set: one file, or several of one patient.",
     );
     const privacy = t(
-      "Only the segmentation is sent to this server: neither images, nor names of files, of which only words such as “rib left 7” are. The server reads no names of patients, and deletes the file when this dialog closes.",
+      "Only the segmentation is sent to this server, no images. Of file names, only words such as “rib left 7” are sent. The server reads no patient names and deletes the file when this dialog closes.",
     );
     return [
       make("p", {}, hint),

@@ -39,7 +39,9 @@ export class PatientImport {
     this.patients = createClient(PatientService, api.transport);
   }
 
-  /** Takes the volume among the files; if there are several, or none, shows what was found, for one or all to be read. */
+  /**
+   * Takes the volume among the files; if there are several, or none, shows what was found, for one or all to be read.
+   */
   async take(files: File[]): Promise<void> {
     await this.end();
     const found = await findVolumes(files);

@@ -1,7 +1,9 @@
 /** Bytes of a tar archive's header, and of the blocks that its files fill. */
 const block = 512;
 
-/** Packs files as one tar archive (POSIX ustar), without copying their content. Names have at most 100 ASCII letters. */
+/**
+ * Packs files as one tar archive (POSIX ustar), without copying their content. Names have at most 100 ASCII letters.
+ */
 export function packTar(files: { name: string; content: Blob }[]): File {
   const parts = files.flatMap(({ name, content }) => [
     header(name, content.size),

@@ -26,7 +26,10 @@ export async function lessonNames(fetchFile: FetchJson): Promise<string[]> {
   return (await fetchFile("lessons/index.json")) as string[];
 }
 
-/** Returns a lesson by the name of its file, in the language of the page. Throws Error for an unknown name, field or value. */
+/**
+ * Returns a lesson by the name of its file, in the language of the page. Throws Error for an unknown name, field or
+ * value.
+ */
 export async function loadLesson(name: string, fetchFile: FetchJson): Promise<Lesson> {
   if (!/^[a-z0-9-]+$/.test(name)) throw new Error(`lesson: "${name}" is not a name of letters a-z, digits and "-"`);
   const lesson = readLesson(`lessons/${name}.json`, await fetchFile(`lessons/${name}.json`));

@@ -175,7 +175,9 @@ export class BodyView implements OverlayHost {
     this.mesh?.geometry.setAttribute("occlusion", new THREE.BufferAttribute(covered, 1, true));
   }
 
-  /** Lights each pixel; or, for machines where the processor draws, each vertex of fewer triangles if they are known. */
+  /**
+   * Lights each pixel; or, for machines where the processor draws, each vertex of fewer triangles if they are known.
+   */
   setDetailed(detailed: boolean): void {
     if (this.mesh === undefined) return;
     this.detailed = detailed;

@@ -10,8 +10,8 @@ const maxDuration = 500;
 
 /**
  * Calls `picked` with the vertex under each click; undefined if it meets no body. Of a picture of a cut in front of all
- * surfaces `inside` gets the place instead [m]. Returns a function that picks at a place on the canvas [CSS pixels] as a click
- * does, for the keyboard.
+ * surfaces `inside` gets the place instead [m]. Returns a function that picks at a place on the canvas [CSS pixels] as
+ * a click does, for the keyboard.
  */
 export function enablePicking(
   canvas: HTMLCanvasElement,

@@ -14,8 +14,8 @@ const lamps: [Triple, number, number, number][] = [
 ];
 
 /**
- * Returns the light of a small studio as a prefiltered environment map, in the frame of the camera: x to the right, y up,
- * z towards the viewer. It is computed from a few shapes, so that the page loads no picture.
+ * Returns the light of a small studio as a prefiltered environment map, in the frame of the camera: x to the right, y
+ * up, z towards the viewer. It is computed from a few shapes, so that the page loads no picture.
  */
 export function makeEnvironment(renderer: THREE.WebGLRenderer): THREE.Texture {
   const room = new THREE.Scene();

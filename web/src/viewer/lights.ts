@@ -8,8 +8,9 @@ const shadowTexels = 2048;
 
 /**
  * The light of a studio, attached to the camera so that all views are lit alike: a soft key light from above right, the
- * light of a room from all sides, and a rim light that separates outlines from the background. The room is an environment
- * map in full and balanced quality and a hemisphere light in plain quality; the key light casts shadows in full quality.
+ * light of a room from all sides, and a rim light that separates outlines from the background. The room is an
+ * environment map in full and balanced quality and a hemisphere light in plain quality; the key light casts shadows in
+ * full quality.
  */
 export class StudioLights {
   private readonly key = new THREE.DirectionalLight("#fff3e6");

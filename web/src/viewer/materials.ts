@@ -3,7 +3,10 @@ import { usePlainShading } from "./plain_shader";
 import { addTissue, type TissueUniforms } from "./tissue_shader";
 import type { Tissue } from "./tissues";
 
-/** A lit surface material for a tissue; plain without the define DETAILED. `moving`: the geometry has its rest positions in the attribute `rest`. */
+/**
+ * A lit surface material for a tissue; plain without the define DETAILED. `moving`: the geometry has its rest positions
+ * in the attribute `rest`.
+ */
 export function surfaceMaterial(
   color: string,
   opacity: number,

@@ -63,8 +63,8 @@ export function viewDirection(view: Side): THREE.Vector3 {
 
 /**
  * Returns the camera in this direction that shows all of `points` as large as possible and in the middle of the free
- * area. Returns the exact optimum: in the camera's frame, with z towards the camera at (cx, cy, d), a point is inside if
- * |x - cx| <= s (d - z), with s the slope of the frustum's side; so d = (max(x + s z) + max(-x + s z)) / (2 s).
+ * area. Returns the exact optimum: in the camera's frame, with z towards the camera at (cx, cy, d), a point is inside
+ * if |x - cx| <= s (d - z), with s the slope of the frustum's side; so d = (max(x + s z) + max(-x + s z)) / (2 s).
  */
 export function fitted(
   away: THREE.Vector3,

@@ -42,7 +42,9 @@ const [twoLines, threeLines, narrow] = [36, 45, 88];
 /** How far labels reach above and below the points [CSS pixels]. */
 const reach = 60;
 
-/** Returns the width of a column of names in a free part of the canvas that is this wide, with its edge [CSS pixels]. */
+/**
+ * Returns the width of a column of names in a free part of the canvas that is this wide, with its edge [CSS pixels].
+ */
 export function nameColumn(width: number): number {
   return edge + Math.min(0.25 * width, 190);
 }

@@ -13,8 +13,8 @@ export function paintSvg(element: SVGSVGElement, pen: CanvasRenderingContext2D, 
 }
 
 /**
- * Draws the texts of the innermost spans of an element over the page onto a canvas, word by word where they are; words that
- * the element cuts off are left out.
+ * Draws the texts of the innermost spans of an element over the page onto a canvas, word by word where they are; words
+ * that the element cuts off are left out.
  */
 export function paintTexts(element: HTMLElement, pen: CanvasRenderingContext2D, ratio: number): void {
   const origin = element.getBoundingClientRect();

@@ -8,8 +8,8 @@ const slowInterval = 36;
 const maxSlowFrames = 12;
 
 /**
- * Chooses the quality of the picture. It starts full, or plain where the processor draws in place of a graphics card, and
- * goes one step down after slow frames. It does not go up again, so that the picture does not alternate.
+ * Chooses the quality of the picture. It starts full, or plain where the processor draws in place of a graphics card,
+ * and goes one step down after slow frames. It does not go up again, so that the picture does not alternate.
  */
 export class QualityChooser {
   private automatic: Quality;

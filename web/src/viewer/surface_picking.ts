@@ -52,8 +52,8 @@ function firstHit(ray: THREE.Ray, view: BodyView, nearest: number, cut: THREE.Pl
 }
 
 /**
- * Returns the distance along a ray to a triangle, seen from either side; Infinity if it misses (Möller and Trumbore 1997,
- * "Fast, minimum storage ray-triangle intersection"). Plain numbers, since it runs for each triangle.
+ * Returns the distance along a ray to a triangle, seen from either side; Infinity if it misses (Möller and Trumbore
+ * 1997, "Fast, minimum storage ray-triangle intersection"). Plain numbers, since it runs for each triangle.
  */
 function distanceTo(
   { origin: o, direction: d }: THREE.Ray,

@@ -17,12 +17,13 @@ export interface TissueUniforms {
 }
 
 /**
- * Adds to a standard material: ambient occlusion per vertex (attribute `occlusion`), grey for vertices that are not of the
- * chosen region (attribute `apart`), fibres and spots that are fixed to
- * the rest position (attribute `rest`), a sheen at grazing angles, and translucency that is denser at the silhouette.
+ * Adds to a standard material: ambient occlusion per vertex (attribute `occlusion`), grey for vertices that are not of
+ * the chosen region (attribute `apart`), fibres and spots that are fixed to the rest position (attribute `rest`), a
+ * sheen at grazing angles, and translucency that is denser at the silhouette.
  *
  * With SECTION the inner side of a surface is drawn as a flat cut: through a clipped closed body one sees nothing else.
- * With PAINTED the surface has exactly its vertex colours, as a scale shows them, and is darker only where it turns away.
+ * With PAINTED the surface has exactly its vertex colours, as a scale shows them, and is darker only where it turns
+ * away.
  */
 export function addTissue(shader: Shader, uniforms: TissueUniforms): void {
   Object.assign(shader.uniforms, uniforms);

@@ -1,12 +1,12 @@
 import * as THREE from "three";
-import type { Body, FrameArrays } from "../geometry/bodies";
+import { type Body, type FrameArrays, shownAtFirst, verticesOf } from "../geometry/bodies";
 import { computeNormals } from "../geometry/normals";
 import { computeOcclusion } from "../geometry/occlusion";
 import type { AxisPlane, SectionPicture } from "../geometry/section";
 import type { Simplifier } from "../geometry/simplified";
 import type { Surface } from "../geometry/surface";
 import { type Marker, type VertexRef } from "../geometry/vertices";
-import { AdaptiveResolution } from "./adaptive_resolution";
+import { resolutionFor } from "./adaptive_resolution";
 import { BodyView } from "./body_view";
 import { CameraRig, type Insets, type ViewOrientation } from "./camera_rig";
 import { enablePicking } from "./click_picking";
@@ -299,8 +299,8 @@ export class Viewer {
   }
 
   /**
-   * Enables picking of vertices by clicks, and of places in the pictures of a cut [m]. Returns a function that picks at a
-   * place on the canvas [CSS pixels].
+   * Enables picking of vertices by clicks, and of places in the pictures of a cut [m]. Returns a function that picks at
+   * a place on the canvas [CSS pixels].
    */
   enablePicking(
     picked: (vertex: VertexRef | undefined) => void,
@@ -317,7 +317,10 @@ export class Viewer {
     );
   }
 
-  /** Calls `rested` with the vertex under the resting pointer and its place [CSS pixels]; undefined if it rests on no body. */
+  /**
+   * Calls `rested` with the vertex under the resting pointer and its place [CSS pixels]; undefined if it rests on no
+   * body.
+   */
   enableHover(rested: (vertex: VertexRef | undefined, x: number, y: number) => void): void {
     const find = (event: PointerEvent) => {
       const visible = this.views.filter(({ group, isFaded }) => group.visible && !isFaded);
@@ -457,31 +460,12 @@ export class Viewer {
   }
 }
 
-/**
- * Returns the resolution of a machine. Without a graphics card, smoothing edges costs as much as all the rest of a
- * drawing; instead a scene at rest is drawn with twice the pixels. Fewer pixels in motion would save little.
- */
-function resolutionFor(software: boolean): AdaptiveResolution {
-  const ratio = Math.min(devicePixelRatio, 2);
-  return software ? new AdaptiveResolution(2, ratio, 0.8) : new AdaptiveResolution(ratio);
-}
-
 /** Returns the positions of some vertices, at most about a thousand; of all if `vertices` is undefined. */
 function placesOf(positions: ArrayLike<number>, vertices: number[] | undefined): THREE.Vector3[] {
   const all = vertices ?? Array.from({ length: positions.length / 3 }, (_, i) => i);
   const stride = Math.ceil(all.length / 1000);
   const some = all.filter((_, i) => i % stride === 0);
   return some.map((i) => new THREE.Vector3().fromArray(positions, 3 * i));
-}
-
-function verticesOf(bodies: Body[]): number {
-  return bodies.reduce((sum, { rest }) => sum + rest.length / 3, 0);
-}
-
-/** Returns the bodies that the scene does not hide; all if it hides all. */
-function shownAtFirst(bodies: Body[]): Body[] {
-  const shown = bodies.filter(({ opacity }) => opacity > 0);
-  return shown.length > 0 ? shown : bodies;
 }
 
 /** Returns some thousands of rest positions as a sample of the scene. */

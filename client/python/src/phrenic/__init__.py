@@ -19,11 +19,11 @@ from typing import Any
 
 # gRPC resolves names as other programs do (nsswitch.conf); its own resolver knows DNS and /etc/hosts alone.
 os.environ.setdefault("GRPC_DNS_RESOLVER", "native")
-# A connection is polled every 0.2 s while no call waits, not every five: phrenicd pings it, and closes it after three
-# without an answer; and between two repeats of a call, gRPC notices no sooner that it has connected again.
+# gRPC polls an idle connection every 0.2 s instead of every 5 s. phrenicd closes a connection after three pings without
+# an answer, and between two repeats of a call gRPC notices a new connection only when it polls.
 os.environ.setdefault("GRPC_CLIENT_CHANNEL_BACKUP_POLL_INTERVAL_MS", "200")
-# With fork support, which is gRPC's default in Python, fork() ends gRPC's threads first: it waits for ever if one of them
-# waits for a connection.
+# With fork support, which is gRPC's default in Python, fork() first ends gRPC's threads, and hangs if one of them waits
+# for a connection.
 os.environ.setdefault("GRPC_ENABLE_FORK_SUPPORT", "0")
 
 from . import aio, errors  # noqa: E402

@@ -68,7 +68,7 @@ class Call:
     repeats: Optional[int] = None
     """The most repeats; None: the connection's `retries`."""
     passing: tuple[type[Error], ...] = ()
-    """Errors beside Unavailable that pass by themselves, so that the call is repeated."""
+    """Errors beside Unavailable after which the call is repeated."""
 
     @property
     def metadata(self) -> list[tuple[str, str]]:
@@ -80,13 +80,13 @@ class Call:
 RETRIES = 160
 """Repeats of a call while the server is unavailable, which take about a minute, as long as the command line waits."""
 FIRST = 6
-"""Repeats of the first call of a connection, about 2 s: an address where no server runs is told soon."""
+"""Repeats of the first call of a connection, about 2 s: an address without a server is an error soon."""
 
 
 def delay_before_repeat(call: Call, error: Error, attempt: int, retries: int) -> Optional[float]:
-    """Returns how long to wait before the call is repeated [s], or None if the error is final: only UNAVAILABLE is
-    repeated, and what the call names as passing, after 0.1, 0.2, 0.4 ... s with jitter, at most 0.5 s. It is the rule of
-    all calls, batches too. The logger "phrenic" warns once, after about 1 s."""
+    """Returns how long to wait before the call is repeated [s], or None if the error is final. Calls are repeated after
+    UNAVAILABLE and after the call's `passing` errors, with delays of 0.1, 0.2, 0.4 ... s with jitter, at most 0.5 s. All
+    calls follow this rule, batches too. The logger "phrenic" warns once, after about 1 s."""
     most = retries if call.repeats is None else min(call.repeats, retries)
     if not isinstance(error, (Unavailable, *call.passing)) or not call.repeatable or attempt >= most:
         return None

@@ -134,8 +134,8 @@ def _noted(grpc_object: T) -> T:
 
 
 def _keep_alive() -> None:
-    """In a forked process: gRPC's locks may be held by threads that only the parent has, so its objects are never
-    finalised here, also when the process ends: their `__del__` would wait for ever."""
+    """In a forked process: threads that only the parent has may hold gRPC's locks, and `__del__` of gRPC's objects would
+    wait for these locks forever. So the objects are never finalised here, also when the process ends."""
     for grpc_object in list(_grpc_objects):
         ctypes.pythonapi.Py_IncRef(ctypes.py_object(grpc_object))
 

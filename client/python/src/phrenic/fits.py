@@ -68,7 +68,8 @@ class Fit:
     """How well each kind of data is met: data, error, rms_still, rms_before, rms_after, rms_held_out."""
 
     def __repr__(self) -> str:
-        return f"<Fit of {len(self.parameters) or len(self.numbers)} numbers, {self.held_out_mm:.2f} mm off on the unseen half>"
+        count = len(self.parameters) or len(self.numbers)
+        return f"<Fit of {count} numbers, {self.held_out_mm:.2f} mm off on the unseen half>"
 
     def to_pandas(self) -> Any:
         """Returns the fitted numbers as a pandas.DataFrame: `parameters`, or `numbers` of several kinds of data."""
@@ -99,7 +100,8 @@ class Fit:
 
     def to_json(self, path: Union[str, Path, None] = None) -> str:
         """Returns the numbers as JSON, without landmarks and scene, and writes them to `path`."""
-        tables = {name: list(getattr(self, name)) for name in ("parameters", "baselines", "regions", "lungs", "numbers", "derived", "kinds")}
+        names = ("parameters", "baselines", "regions", "lungs", "numbers", "derived", "kinds")
+        tables = {name: list(getattr(self, name)) for name in names}
         errors = {name: row(getattr(self.message, name)) for name in ("fitting", "held_out", "assimilated")
                   if self.message.HasField(name)}  # fmt: skip
         numbers = {**row(self.message), "correlation": self.correlation.tolist(), **errors, **tables}

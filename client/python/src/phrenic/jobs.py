@@ -74,7 +74,7 @@ def _export_done(id: str, progress: Progress) -> Operation[export_pb2.ExportSumm
 
     yield Call("ExportService.WatchExport", export_pb2.WatchExportRequest(export_id=id), LONG, note)
     if not seen or seen[0].state != export_pb2.EXPORT_STATE_DONE:
-        raise FailedPrecondition((seen and seen[0].problem) or "the export has not ended")
+        raise FailedPrecondition((seen and seen[0].problem) or "the server ended the stream before the export was done: try again")
     return seen[0].summary
 
 
@@ -169,7 +169,7 @@ def study(
 
         yield Call("StudyService.WatchStudy", study_pb2.WatchStudyRequest(study_id=id), LONG, note)
         if not seen or seen[0].state != study_pb2.STUDY_STATE_DONE:
-            raise FailedPrecondition((seen and seen[0].problem) or "the study has not ended")
+            raise FailedPrecondition((seen and seen[0].problem) or "the server ended the stream before the study was done: try again")
         return study_of(seen[0].result, (yield from _page(id)))
     finally:
         yield from _dropped(Call("StudyService.DeleteStudy", study_pb2.DeleteStudyRequest(study_id=id), repeats=FIRST))

@@ -110,7 +110,7 @@ class Process:
             time.sleep(0.005)
         text = self.log.read_text(errors="replace").strip()
         self.stop()
-        raise NotStarted(f"phrenicd did not start: {text or 'it ended without a word; is it the right program?'}")
+        raise NotStarted(f"phrenicd did not start: {text or 'it ended without a message; is it the right program?'}")
 
 
 def notebook_origins() -> list[str]:

@@ -38,7 +38,7 @@ EVERYTHING = ("bodies", "positions", "velocities", "scalars")
 
 
 class SimulationWarning(UserWarning):
-    """What the server warns of: for example a time step above the largest stable one."""
+    """A warning of the server, for example of a time step above the largest stable one."""
 
 
 def source_of(
@@ -154,8 +154,8 @@ class SessionOperations:
         return (yield from operation)
 
     def _settle(self) -> Operation[None]:
-        """Ends what a call that was cut off left on the server, and takes over the tick that it reached. A session that
-        others step is not stopped."""
+        """Pauses the session after a call that was cut off, and takes over the tick that it reached. A session that others
+        step is not paused."""
         if self._owned:
             yield from self._change("PauseSession", session_pb2.PauseSessionRequest())
         else:
@@ -416,14 +416,14 @@ def create(
 
 
 def _made_before(id: str) -> Operation[session_pb2.Session]:
-    """Returns the session that a call made whose answer was lost, once it is there: it may be compiling. Its control
-    token is lost; everybody may change a session that is not under control, as this one is."""
+    """Returns the session of a call whose answer was lost, once it exists: it may be compiling. Its control token is
+    lost, but the session is not under control, so everybody may change it."""
     request = session_pb2.GetSessionRequest(session_id=id)
     return (yield Call("SessionService.GetSession", request, passing=(NotFound,))).session
 
 
 def _unmade(id: str) -> Operation[None]:
-    """Deletes the session that a call made which was cut off, if it did."""
+    """Deletes the session of a call that was cut off, if the call has made it."""
     try:
         yield Call("SessionService.DeleteSession", session_pb2.DeleteSessionRequest(session_id=id), repeatable=False)
     except Error:
@@ -462,8 +462,8 @@ def attach(id: str) -> Operation[session_pb2.Session]:
 
 
 def check_server(server: Any, asynchronous: bool = False) -> None:
-    """InvalidArgument if `server` is none of this client."""
+    """InvalidArgument if `server` is not a server of this client: blocking, or asyncio."""
     if asynchronous == getattr(getattr(server, "connection", None), "asynchronous", None):
         return
     maker = "phrenic.aio.connect" if asynchronous else "phrenic.connect"
-    raise InvalidArgument(f"server: {server!r} is none: give that of {maker}(address)")
+    raise InvalidArgument(f"server: {server!r} is not a server of this client: give that of {maker}(address)")

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .server import Server
 
 LabelFiles = Union[str, Path, Sequence[Union[str, Path]]]
-"""A label file (NIfTI, DICOM Segmentation, RT Structure Set), a zip or tar archive of some, a folder, or several files."""
+"""A label file (NIfTI, DICOM Segmentation, RT Structure Set), a zip or tar archive, a folder, or several files."""
 
 CHUNK = 1 << 20
 """[bytes]"""
@@ -38,11 +38,11 @@ class Patient:
     """A patient that the server has made of labels, or has refused."""
 
     message: patients_pb2.Patient
-    """All of it, as the API has it."""
+    """The message of the API, with all fields."""
     findings: Table
     """Reasons of the verdict, the gravest first: verdict, what, kind, parts, values."""
     surfaces: Table
-    """A row a surface: body, vertices, triangles, volume_ml, label_volume_ml, from_template."""
+    """A row for each surface: body, vertices, triangles, volume_ml, label_volume_ml, from_template."""
     ribs: Table
     """Axes of the ribs: body, neck_mm, axis_degrees, drop_degrees."""
 
@@ -85,11 +85,17 @@ def patient(
     progress: Progress = None,
     server: Optional["Server"] = None,
 ) -> Patient:
-    """Makes a person's breathing thorax of label files. `map`: program whose numbers the labels have, such as
-    "vista3d" or "moose"; without it, names count, else the numbers that fit best. `labels`: names of labels by their
-    numbers, as the label maps have them, {3: "liver"}; others are left out. `vertices` of the diaphragm.
-    `edge_length_mm` of bones. `anyway`: also if the labels are not usable. Files are sent without their folders' names.
-    InvalidArgument says what is wrong with which file. A `progress` that raises cancels the patient."""
+    """Makes a person's breathing thorax of label files, which are sent without the names of their folders.
+
+    map: program that numbered the labels, such as "vista3d" or "moose"; by default names count, else the map that fits
+        best.
+    labels: structures by label number, named as in the label maps: {3: "liver"}; other labels are left out.
+    vertices: of the diaphragm, about.
+    edge_length_mm: of the bones' triangles.
+    anyway: makes the patient also if the labels are not usable.
+    progress: is called with the fraction that is done and the current step; if it raises, the patient is cancelled.
+
+    InvalidArgument names the file and what is wrong with it."""
     if server is None:
         from .server import default_server
 
@@ -136,7 +142,7 @@ def _watched(request: patients_pb2.CreatePatientRequest, progress: Progress) -> 
         except NotFound:
             pass
     if not seen or not (seen[0].HasField("scene") or seen[0].report.HasField("readiness")):
-        raise InvalidArgument((seen and seen[0].problem) or "the patient has not ended")
+        raise InvalidArgument((seen and seen[0].problem) or "the server ended the stream before the patient was made: try again")
     report = seen[0].report
     return Patient(seen[0], Table.of(report.readiness.findings), Table.of(report.surfaces), Table.of(report.ribs))
 

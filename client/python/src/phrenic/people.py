@@ -70,7 +70,9 @@ def studied(
 ) -> Operation[MotionStudy]:
     """The operation of study()."""
     given = _in_folder(Path(cases)) if isinstance(cases, (str, Path)) else cases
-    request = fit_pb2.StudyMotionRequest(source=source, modes=whole("modes", modes, most=INT32), split=whole("split", split, most=INT32))
+    request = fit_pb2.StudyMotionRequest(
+        source=source, modes=whole("modes", modes, most=INT32), split=whole("split", split, most=INT32)
+    )
     for name, landmarks in mapping("cases", given).items():
         request.cases.add(name=text_of("cases", name), landmarks=landmark_files(landmarks))
     people: dict[str, fit_pb2.MotionOfPerson] = {}  # by name: a call that is repeated brings them again

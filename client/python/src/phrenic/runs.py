@@ -84,16 +84,22 @@ def batch(
     finished: Container[int] = (),
     server: Optional[Server] = None,
 ) -> Iterator[Run]:
-    """Runs the scene once for each set of live parameters and yields each run as it ends. `threads` runs are in progress
-    at a time (default: one a core of the server). `parameters` may be endless: at most 256 of them are taken
-    at a time. The runs
-    are the same, bit for bit, at any number of threads. `start`: a frame of a session of this scene, with "positions",
-    "velocities" and "scalars", from which every run goes on; `starts`: a state a run; default: the scene's start. (An
-    integrator that remembers the step before, velocity_verlet or bdf2, begins there as after a reset.) `read`: parts of the last state,
-    "positions", "velocities" and "scalars". `physique`: the generated body, as of a Session.
-    `summary`: instead of samples, the range of each measure, and an end at the first step that reaches `seconds`. A loop that breaks ends the runs in progress; `finished`, the indices of the
-    runs that it had, lets another call with the same arguments run the rest. After a lost connection the batch goes on by
-    itself with the runs that are missing; Unavailable once `retries` attempts, a minute, have given none."""
+    """Runs the scene once for each set of live parameters and yields each run as it ends. `parameters` may be endless:
+    at most 256 of them are taken at a time.
+
+    threads: number of runs in progress at a time (default: one a core of the server). The runs are the same, bit for bit,
+        at any number of threads.
+    start: a frame of a session of this scene, with "positions", "velocities" and "scalars", from which every run goes on;
+        default: the scene's start. An integrator that remembers the step before, velocity_verlet or bdf2, begins there
+        as after a reset.
+    starts: the same, a state for each run.
+    read: parts of the last state: "positions", "velocities" and "scalars".
+    physique: the generated body, as of a Session.
+    summary: instead of samples, the range of each measure; a run then ends at the first step that reaches `seconds`.
+    finished: indices of runs that are left out: those that an earlier call with the same arguments has yielded.
+
+    A loop that breaks ends the runs in progress. After a lost connection the batch requests the missing runs again;
+    Unavailable after `retries` attempts (a minute) without a run."""
     server = server or default_server()
     check_server(server)
     connection = server.connection
@@ -204,7 +210,9 @@ def parts(
 
 
 def _with_starts(
-    parameters: Iterable[Mapping[str, Any]], start: Union[Frame, State, None], starts: Optional[Iterable[Union[Frame, State]]]
+    parameters: Iterable[Mapping[str, Any]],
+    start: Union[Frame, State, None],
+    starts: Optional[Iterable[Union[Frame, State]]],
 ) -> Iterator[tuple[Mapping[str, Any], Optional[State]]]:
     """Yields each run's parameters with its start. InvalidArgument if there are fewer starts than runs."""
     if start is not None and starts is not None:

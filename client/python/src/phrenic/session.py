@@ -226,9 +226,9 @@ class Session(SessionOperations):
             self._connection.cancel(events)
 
     def samples(self, measures: Sequence[str] = (), interval: float = 0.02) -> Iterator[Sample]:
-        """Yields the session's measures, all or those named, at every `interval` of simulated time, whichever client steps it:
-        none is dropped unless the loop falls 4096 samples behind, which Sample.left_out says. Begins with the next
-        multiple of the interval. Ends by `break`."""
+        """Yields the session's measures, all or those named, at every `interval` of simulated time [s], whichever client
+        steps it. No sample is dropped unless the loop falls 4096 samples behind; Sample.left_out counts them. Begins with
+        the next multiple of the interval. Ends by `break`."""
         self._check_open()
         batches = self._connection.open(self._samples_call(measures, interval))
         reader = SampleReader()
@@ -251,8 +251,9 @@ class Session(SessionOperations):
         **options: Any,
     ) -> dict[str, Any]:
         """Records a copy of the session from now on, `seconds` long, to a file: .msh, .depl, .pvd, .glb, .csv, or
-        .html, a page that plays one breath if `seconds` is 0. The session itself does not move, and changes that wait for
-        their tick are left out. `options`: those of CreateExportRequest, such as steps_per_frame. Returns the summary: frames, vertices, state_hash at the end ..."""
+        .html, a page that plays one breath if `seconds` is 0. The session itself does not move, and changes that wait
+        for their tick are left out. `options`: fields of CreateExportRequest, such as steps_per_frame. Returns the
+        summary: frames, vertices, state_hash at the end and more."""
         fields = {"seconds": seconds, "frames_per_second": fps, "bodies": bodies, **options}
         return self._do(jobs.export(self.id, path, fields, progress))
 

@@ -139,7 +139,9 @@ class BreathingVector(VectorEnv):
         except (TypeError, ValueError) as error:
             raise InvalidArgument(f"actions: give an array with a row a patient: {error}") from None
         if rows.ndim != 2 or len(rows) != self.num_envs:
-            raise InvalidArgument(f"actions: an array of shape {rows.shape} for {self.num_envs} patients: give a row a patient")
+            raise InvalidArgument(
+                f"actions: an array of shape {rows.shape} for {self.num_envs} patients: give a row for each"
+            )
         return {i: self.task.check(rows[i]) for i in going}
 
     def _simulate(self, going: Sequence[int], actions: Mapping[int, np.ndarray]) -> list[Run]:

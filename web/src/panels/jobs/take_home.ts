@@ -4,8 +4,8 @@ import { exportProgress, type FileMaking } from "./export_progress";
 import { t } from "../../language/translate";
 
 /**
- * Returns a row with a button that saves the next breath as a page that plays without a server. `exports` belongs to the
- * row.
+ * Returns a row with a button that saves the next breath as a page that plays without a server. `exports` belongs to
+ * the row.
  */
 export function takeHomeRow(exports: Exports): HTMLElement {
   exports.choose({ format: "html", seconds: 0, bodies: [] });

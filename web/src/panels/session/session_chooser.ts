@@ -31,7 +31,7 @@ export class SessionChooser {
       make(
         "div",
         { className: "acts" },
-        leadTo("body-new", t("A body by its numbers"), chooseBody),
+        leadTo("body-new", t("A body by sex, age and size"), chooseBody),
         leadTo("patient-new", t("A patient from a segmentation"), importPatient),
       ),
       this.words,

@@ -20,8 +20,8 @@ export function questionCount({ steps }: Lesson): number {
 }
 
 /**
- * Returns a form with all questions of a lesson that a test can ask, without saying which answers are right. Calls `answered` for each
- * question when the form is handed in, and then `done`. Questions without an answer count as wrong.
+ * Returns a form with all questions of a lesson that a test can ask, without saying which answers are right. Calls
+ * `answered` for each question when the form is handed in, and then `done`. Questions without an answer count as wrong.
  */
 export function lessonTest(
   lesson: Lesson,

@@ -5,8 +5,8 @@ import { fixed, t } from "../../language/translate";
 import type { OnPredicted } from "./prediction_pad";
 
 /**
- * A question whose answer is a curve: a button starts the prediction, and the mean distance from the breath that is then
- * played is the answer. It can be tried again.
+ * A question whose answer is a curve: a button starts the prediction, and the mean distance from the breath that is
+ * then played is the answer. It can be tried again.
  */
 export function predictionForm(
   question: Question,

@@ -25,8 +25,8 @@ const recent = 8;
 export type OnPredicted = (distance: number, subject: PredictionSubject) => void;
 
 /**
- * Predict, then play: records the course that the user predicts for a measure over the next breath, plays the breath, and
- * shows both curves and their mean distance.
+ * Predict, then play: records the course that the user predicts for a measure over the next breath, plays the breath,
+ * and shows both curves and their mean distance.
  */
 export class PredictionPad {
   readonly element = make("section", { id: "prediction", ariaLabel: t("Predict the next breath") });

@@ -121,8 +121,8 @@ export function answersText({ answers, number, prediction }: Question): string {
 }
 
 /**
- * Returns the answers of a text, one a line with "*" before right ones; a number, as "1.5 ± 0.2 l"; or a curve to draw, as
- * "predict right dome ± 4".
+ * Returns the answers of a text, one a line with "*" before right ones; a number, as "1.5 ± 0.2 l"; or a curve to draw,
+ * as "predict right dome ± 4".
  */
 export function answersOf(text: string) {
   const curve = /^predict\s+([^\n±]*[^\s±])\s*(?:±|\+-)\s*(\d+(?:\.\d+)?)$/.exec(text.trim());
