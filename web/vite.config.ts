@@ -23,6 +23,25 @@ function contentSecurityPolicy(): Plugin {
   };
 }
 
+// Writes the descriptors of the protobuf files as text, which the browser encodes in base64: only in text does Brotli find
+// the names that they share with each other and with the code.
+function textDescriptors(): Plugin {
+  return {
+    name: "text-descriptors",
+    apply: "build",
+    transform: {
+      order: "pre",
+      filter: { id: /\/src\/gen\/.*_pb\.ts$/ },
+      handler(code, id) {
+        const parts = /^([^]*fileDesc\()"([A-Za-z0-9+/=]+)"([^]*)$/.exec(code);
+        if (parts === null) throw new Error(`${id} has no descriptor in base64: has protoc-gen-es changed?`);
+        const text = Buffer.from(parts[2], "base64").toString("latin1");
+        return { code: `${parts[1]}/* @__PURE__ */ btoa(${JSON.stringify(text)})${parts[3]}`, map: null };
+      },
+    },
+  };
+}
+
 // Writes each script, style, page and decoder compressed beside itself; phrenicd serves what the browser accepts.
 function compressed(): Plugin {
   return {
@@ -43,7 +62,7 @@ function compressed(): Plugin {
 }
 
 export default defineConfig({
-  plugins: [contentSecurityPolicy(), compressed()],
+  plugins: [contentSecurityPolicy(), textDescriptors(), compressed()],
   build: {
     target: "es2022",
     modulePreload: { polyfill: false },

@@ -8,10 +8,7 @@ import type { Clock } from "../timing/clock";
 export function studiesSection(api: Api, clock: Clock, controller: SessionController): HTMLElement {
   const panel = section(t("Studies"), false);
   return loadOnOpen(panel, async () => {
-    const [{ fillStudies }, { Studies }] = await Promise.all([
-      import("../panels/jobs/studies_panel"),
-      import("../session/studies"),
-    ]);
+    const { fillStudies, Studies } = await import("../panels/jobs/studies_panel");
     fillStudies(panel, new Studies(api, clock), controller);
   });
 }

@@ -7,11 +7,10 @@ import { FrameService } from "../gen/phrenic/v1/frames_pb";
 import { ReferenceService } from "../gen/phrenic/v1/references_pb";
 import { SampleService } from "../gen/phrenic/v1/samples_pb";
 import { SceneService, SessionService } from "../gen/phrenic/v1/session_pb";
-import { StudyService } from "../gen/phrenic/v1/study_pb";
 import { TissueService } from "../gen/phrenic/v1/tissue_pb";
 import { UploadService } from "../gen/phrenic/v1/upload_pb";
 
-/** Clients of the server's services over one transport: gRPC-web in the page, a router in tests. */
+/** Clients of the services that the page uses from its start, over one transport: gRPC-web in the page, a router in tests. */
 export interface Api {
   /** For the clients of services that only parts use which are loaded later. */
   transport: Transport;
@@ -25,11 +24,10 @@ export interface Api {
   uploads: Client<typeof UploadService>;
   references: Client<typeof ReferenceService>;
   samples: Client<typeof SampleService>;
-  studies: Client<typeof StudyService>;
   tissue: Client<typeof TissueService>;
 }
 
-/** Creates the clients of all services over one transport. */
+/** Creates the clients over one transport. */
 export function createApi(transport: Transport): Api {
   return {
     transport,
@@ -43,7 +41,6 @@ export function createApi(transport: Transport): Api {
     uploads: createClient(UploadService, transport),
     references: createClient(ReferenceService, transport),
     samples: createClient(SampleService, transport),
-    studies: createClient(StudyService, transport),
     tissue: createClient(TissueService, transport),
   };
 }

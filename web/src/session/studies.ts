@@ -1,6 +1,7 @@
+import { type Client, createClient } from "@connectrpc/connect";
 import { type Api, errorText } from "../connection/api";
 import type { Parameters } from "../gen/phrenic/v1/parameters_pb";
-import { type Study, StudyState } from "../gen/phrenic/v1/study_pb";
+import { type Study, StudyService, StudyState } from "../gen/phrenic/v1/study_pb";
 import { Signal } from "../state/signal";
 import type { Clock } from "../timing/clock";
 
@@ -12,17 +13,20 @@ export class Studies {
   readonly all = new Signal<Study[]>([]);
   /** The error of the last call; empty on success. */
   readonly errorMessage = new Signal("");
+  private readonly calls: Client<typeof StudyService>;
   private readonly watched = new Set<string>();
 
   constructor(
-    private readonly api: Api,
+    { transport }: Pick<Api, "transport">,
     private readonly clock: Clock,
-  ) {}
+  ) {
+    this.calls = createClient(StudyService, transport);
+  }
 
   /** Loads the studies and watches those that are not finished. */
   async load(): Promise<void> {
     await this.call(async () => {
-      const { studies } = await this.api.studies.listStudies({});
+      const { studies } = await this.calls.listStudies({});
       this.all.set(studies);
       for (const study of studies) if (!isFinished(study)) void this.watch(study.id);
     });
@@ -31,7 +35,7 @@ export class Studies {
   /** Starts a study of a catalogue scene with these parameters. */
   async start(kind: StudyKind, scene: string, parameters: Parameters | undefined): Promise<void> {
     await this.call(async () => {
-      const { study } = await this.api.studies.createStudy({
+      const { study } = await this.calls.createStudy({
         source: { source: { case: "name", value: scene } },
         parameters,
         // The meshes of the thesis' sizes take minutes to generate and are independent of this scene.
@@ -45,20 +49,19 @@ export class Studies {
 
   /** Cancels a running study and deletes it. */
   async remove(studyId: string): Promise<void> {
-    await this.call(() => this.api.studies.deleteStudy({ studyId }));
+    await this.call(() => this.calls.deleteStudy({ studyId }));
     this.all.set(this.all.value.filter(({ id }) => id !== studyId));
   }
 
   /** Returns a study with its result when it is finished. */
   async result(studyId: string): Promise<Study | undefined> {
-    for await (const { study } of this.api.studies.watchStudy({ studyId }))
-      if (study && isFinished(study)) return study;
+    for await (const { study } of this.calls.watchStudy({ studyId })) if (study && isFinished(study)) return study;
     return undefined;
   }
 
   /** Returns its tables and plots as one HTML file. */
   async page(studyId: string): Promise<string> {
-    return (await this.api.studies.getStudyPage({ studyId })).html;
+    return (await this.calls.getStudyPage({ studyId })).html;
   }
 
   private async watch(studyId: string): Promise<void> {
@@ -67,7 +70,7 @@ export class Studies {
     const known = () => this.all.value.some(({ id }) => id === studyId);
     while (known()) {
       try {
-        for await (const { study } of this.api.studies.watchStudy({ studyId })) {
+        for await (const { study } of this.calls.watchStudy({ studyId })) {
           if (study !== undefined && known()) this.replaceOrAdd(study);
         }
         break;

@@ -2,8 +2,10 @@ import { download } from "../../dom/download";
 import { make } from "../../dom/elements";
 import { type Study, StudyState } from "../../gen/phrenic/v1/study_pb";
 import type { SessionController } from "../../session/session_controller";
-import { isFinished, type Studies, type StudyKind } from "../../session/studies";
+import { isFinished, Studies, type StudyKind } from "../../session/studies";
 import { t } from "../../language/translate";
+
+export { Studies };
 
 const kinds: [StudyKind, string, string][] = [
   [
