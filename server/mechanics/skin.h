@@ -15,6 +15,8 @@
 
 namespace phrenic {
 
+struct EvalContext;
+
 // The weight of one driver for one vertex.
 struct SkinWeight {
   int vertex = 0;             // of the skinned body
@@ -38,12 +40,24 @@ struct DriverSheet {
   Eigen::VectorXd rest_areas;  // of all triangles at each vertex, from first_vertex on [m^2]; 0 for other vertices
 };
 
+// Corrects where a skin's weights have placed the vertices. Immutable; thread-safe, for threads with scratch memory of
+// their own.
+class SkinCorrection {
+ public:
+  virtual ~SkinCorrection() = default;
+  // Corrects the positions x [m], 3 x vertices of the body. Uses the context's scratch memory.
+  virtual void Place(const EvalContext& at, MutablePoints x) const = 0;
+  // Also corrects the velocities v [m/s].
+  virtual void Move(const EvalContext& at, MutablePoints x, MutablePoints v) const = 0;
+};
+
 // The skin of one seen body: weights or bindings.
 struct Skin {
   int body = 0;
   std::vector<SkinWeight> weights;           // sorted by vertex; or ...
   std::vector<TriangleBinding> triangles;    // ... one per vertex of the body
   std::shared_ptr<const DriverSheet> sheet;  // if not null, `triangles` are bound to this sheet
+  std::vector<std::shared_ptr<const SkinCorrection>> corrections = {};  // of what the weights give, in this order
 };
 
 }  // namespace phrenic

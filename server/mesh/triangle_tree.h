@@ -43,11 +43,14 @@ class TriangleTree {
   void Fit(const ConstPoints& x, Boxes& boxes) const;
   // Returns the nearest point within `reach` [m]. Requires: `boxes` are fitted to `x`.
   SurfacePoint Nearest(const ConstPoints& x, const Boxes& boxes, const Eigen::Vector3d& point, double reach) const;
+  // Replaces `best` by the nearest point of a triangle, if that is nearer, or as near and facing more.
+  void Try(const ConstPoints& x, const Eigen::Vector3d& point, int triangle, SurfacePoint& best) const;
+  // The triangles are in the tree's order.
   Eigen::Vector3i triangle(int t) const { return triangles_.col(t); }
+  const Triangles& triangles() const { return triangles_; }
 
  private:
   void FindBoundary();
-  void Try(const ConstPoints& x, const Eigen::Vector3d& point, int triangle, SurfacePoint& best) const;
 
   BoxTree tree_;
   Triangles triangles_;                         // in the tree's order

@@ -27,12 +27,14 @@
 #include "server/mechanics/measures/force_output.h"
 #include "server/mechanics/measures/highest.h"
 #include "server/mechanics/measures/volume.h"
+#include "server/mechanics/motions/cage_limit.h"
 #include "server/mechanics/motions/insertion.h"
 #include "server/mechanics/motions/lung_modes.h"
 #include "server/mechanics/motions/oscillation.h"
 #include "server/mechanics/motions/ribs.h"
 #include "server/mechanics/motions/sternum.h"
 #include "server/mechanics/skinning/add_skins.h"
+#include "server/mechanics/skinning/sheet_obstacle.h"
 
 namespace phrenic {
 namespace {
@@ -110,6 +112,14 @@ absl::StatusOr<std::unique_ptr<Constraint>> MakeConstraint(const v1::Constraint&
   return NoKind(path);
 }
 
+// Adds skins, and then what corrects them: the last, a sheet that nothing passes through, has the last word.
+absl::Status AddCorrectedSkins(const v1::Skin& scene, const std::string& name, std::string_view path,
+                               ModelBuilder& builder) {
+  if (absl::Status status = AddSkins(scene, name, path, builder); !status.ok()) return status;
+  if (absl::Status status = AddCageLimit(scene, path, builder); !status.ok()) return status;
+  return AddObstacle(scene, path, builder);
+}
+
 absl::Status AddMotion(const v1::Motion& scene, std::string_view path, ModelBuilder& builder) {
   switch (scene.kind_case()) {
     case v1::Motion::kRibs:
@@ -119,7 +129,7 @@ absl::Status AddMotion(const v1::Motion& scene, std::string_view path, ModelBuil
     case v1::Motion::kOscillation:
       return Add(Oscillation::Make(scene.oscillation(), scene.name(), In(path, "oscillation"), builder), builder);
     case v1::Motion::kSkin:
-      return AddSkins(scene.skin(), scene.name(), In(path, "skin"), builder);
+      return AddCorrectedSkins(scene.skin(), scene.name(), In(path, "skin"), builder);
     case v1::Motion::kInsertion:
       return Add(Insertion::Make(scene.insertion(), scene.name(), In(path, "insertion"), builder), builder);
     case v1::Motion::kLungModes:

@@ -150,6 +150,15 @@ absl::Status BindAllToSheet(const std::vector<int>& bodies, const std::vector<in
   return absl::OkStatus();
 }
 
+absl::Status CheckCorrections(const v1::Skin& scene, std::string_view path) {
+  const bool by_weights = scene.mode() == v1::SKIN_MODE_UNSPECIFIED || scene.mode() == v1::SKIN_MODE_NEAREST_VERTICES ||
+                          scene.mode() == v1::SKIN_MODE_SMOOTH;
+  if (by_weights || (scene.obstacle().empty() && scene.wall().empty())) return absl::OkStatus();
+  return FieldError(
+      absl::StrCat(std::string(path), scene.obstacle().empty() ? ".wall" : ".obstacle"),
+      "only SKIN_MODE_NEAREST_VERTICES and SKIN_MODE_SMOOTH can have one; leave it out, or set that mode");
+}
+
 }  // namespace
 
 absl::Status AddSkins(const v1::Skin& scene, const std::string& given, std::string_view path, ModelBuilder& builder) {
@@ -163,6 +172,7 @@ absl::Status AddSkins(const v1::Skin& scene, const std::string& given, std::stri
   for (const int b : *bodies) {
     if (absl::Status status = CheckBody(builder.model.bodies[b], field); !status.ok()) return status;
   }
+  if (absl::Status status = CheckCorrections(scene, path); !status.ok()) return status;
   if (scene.mode() == v1::SKIN_MODE_TRIANGLES)
     return BindAllToTriangles(*bodies, *drivers, name, drivers_field, builder);
   if (scene.mode() == v1::SKIN_MODE_SHEET)

@@ -78,6 +78,7 @@ BodyPoints::BodyPoints(const Model& model, int body)
   weights_ = model.skins[skin].weights;
   triangles_ = model.skins[skin].triangles;
   sheet_ = model.skins[skin].sheet.get();
+  corrections_ = model.skins[skin].corrections;
 }
 
 // Does not write v without kVelocities.
@@ -93,6 +94,7 @@ void BodyPoints::Follow(const EvalContext& at, MutablePoints x, MutablePoints v)
   if (kVelocities) v.setZero();
   const DriverState drivers = {PoseMatricesOf(at), driver_rest_, at.x.data(), at.v.data()};
   ApplySkinWeights(weights_, drivers, rest_->data(), x.data(), kVelocities ? v.data() : nullptr);
+  for (const auto& correction : corrections_) kVelocities ? correction->Move(at, x, v) : correction->Place(at, x);
 }
 
 void BodyPoints::Place(const EvalContext& at, MutablePoints x) const {

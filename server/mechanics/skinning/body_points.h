@@ -42,7 +42,8 @@ class BodyPoints {
   std::span<const SkinWeight> weights_;
   std::span<const TriangleBinding> triangles_;
   const DriverSheet* sheet_ = nullptr;  // to which triangles_ are bound; null if to flat triangles
-  const double* driver_rest_;           // the simulated vertices at rest [m]
+  std::span<const std::shared_ptr<const SkinCorrection>> corrections_;
+  const double* driver_rest_;  // the simulated vertices at rest [m]
 };
 
 // Sets `out`, 3 x vertices of the body, to the positions of all vertices of a body in a state [m]. Thread-safe, for
