@@ -11,7 +11,7 @@
 //   compliance of the rib cage    1   - 0.30 / 34 from 31 to 65 years, the same line from 24 to 75
 //   of the abdominal wall         1   - 0.37 / 34
 //
-// Sources (server/physiology/README.md says which numbers are chosen): Bellemare et al., Am J Respir Crit Care Med
+// Sources (server/physiology/bodies.md says which numbers are chosen): Bellemare et al., Am J Respir Crit Care Med
 // 2003;168:305; Bellemare et al., Respir Physiol Neurobiol 2006;150:233; Weaver et al., J Biomech Eng 2014
 // (PMC4111931); Estenne et al., J Appl Physiol 1985;59:1842; Singh et al., J Appl Physiol 2001;91:1913.
 #ifndef PHRENIC_SERVER_SCHEMA_PHYSIQUE_H_
