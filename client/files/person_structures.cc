@@ -7,8 +7,8 @@
 #include "client/files/whole_file.h"
 #include "server/fit/surface_residuals.h"
 #include "server/imaging/label_file.h"
-#include "server/imaging/labels/label_map.h"
 #include "server/imaging/label_surface.h"
+#include "server/imaging/labels/label_map.h"
 
 namespace phrenic::client {
 namespace {

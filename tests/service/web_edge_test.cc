@@ -1,5 +1,5 @@
-// What the web gateway refuses at its edge: headers that gRPC forbids, hosts that were not named, ambiguous framing, and
-// bodies of callers that are not known.
+// What the web gateway refuses at its edge: headers that gRPC forbids, hosts that were not named, ambiguous framing,
+// and bodies of callers that are not known.
 #include "tests/support/raw_socket.h"
 // After Boost, which needs <utility> first.
 #include <filesystem>
