@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/measures/readings.h"
 #include "server/mechanics/skinning/body_points.h"
+#include "server/mechanics/skinning/pose_matrices.h"
 #include "server/mechanics/skinning/probe_position.h"
 #include "server/stream/codecs/wire.h"
 
@@ -17,12 +18,14 @@ absl::Status NotFinite(const std::string& what, const State& state) {
 
 absl::Status AppendPositions(const Model& model, const Layout& layout, const State& state, std::string& bytes) {
   bytes.reserve(sizeof(float) * 3 * layout.vertices());
+  EvalContext at = MakeEvalContext(model, model.parameters, state);  // one for all bodies: its scratch memory is kept
+  at.pose_matrices = PoseMatricesOf(at).data();
   Points placed;
   Eigen::MatrixXf floats;
   for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
     if (layout.placement(i) != v1::PLACEMENT_STREAMED) continue;
     placed.resize(3, model.bodies[i].mesh.vertices.cols());
-    PlaceBody(model, state, i, placed);
+    BodyPoints(model, i).Place(at, placed);
     floats = placed.cast<float>();
     if (!floats.allFinite()) return NotFinite(absl::StrCat("a vertex of ", model.bodies[i].name), state);
     AppendFloats(floats, bytes);
