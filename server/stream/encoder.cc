@@ -19,7 +19,7 @@ bool Encoder::Make(const Snapshot& snapshot) {
   sequence_ = snapshot.sequence;
   made_.clear();
   shown_ = false;
-  absl::StatusOr<v1::Frame> frame = MakeFrame(*model_, layout_, snapshot);
+  absl::StatusOr<v1::Frame> frame = MakeFrame(*model_, layout_, snapshot, scratch_);
   sendable_ = frame.ok();
   if (!sendable_) return false;
   numbers_.Swap(&*frame);

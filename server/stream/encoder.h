@@ -55,6 +55,7 @@ class Encoder {
   const std::vector<int> streamed_;      // indices of bodies, ascending
   std::int64_t sequence_ = -1;           // of the cached snapshot
   bool sendable_ = false;                // its numbers are finite
+  const Scratch scratch_;                // of frames
   v1::Frame numbers_;                    // without positions and poses
   std::string poses_;                    // encoded
   Floats positions_;                     // of all streamed bodies

@@ -16,9 +16,10 @@ absl::Status NotFinite(const std::string& what, const State& state) {
   return absl::InternalError(absl::StrCat(what, " is not finite at tick ", state.tick, ": the frame is not sent"));
 }
 
-absl::Status AppendPositions(const Model& model, const Layout& layout, const State& state, std::string& bytes) {
+absl::Status AppendPositions(const Model& model, const Layout& layout, const State& state, const Scratch& scratch,
+                             std::string& bytes) {
   bytes.reserve(sizeof(float) * 3 * layout.vertices());
-  EvalContext at = MakeEvalContext(model, model.parameters, state);  // one for all bodies: its scratch memory is kept
+  EvalContext at = MakeEvalContext(model, model.parameters, state, scratch);
   at.pose_matrices = PoseMatricesOf(at).data();
   Points placed;
   Eigen::MatrixXf floats;
@@ -44,8 +45,9 @@ absl::Status AppendPoses(const State& state, std::string& bytes) {
   return absl::OkStatus();
 }
 
-absl::Status AddProbe(const Model& model, const State& state, const Probe& probe, v1::Frame& frame) {
-  const Eigen::Vector3d x = ProbePosition(model, state, probe);
+absl::Status AddProbe(const Model& model, const State& state, const Probe& probe, const Scratch& scratch,
+                      v1::Frame& frame) {
+  const Eigen::Vector3d x = ProbePosition(model, state, probe, scratch);
   if (!x.allFinite()) return NotFinite(absl::StrCat("probe ", probe.name), state);
   const Eigen::Vector3d moved = x - model.bodies[probe.body].mesh.vertices.col(probe.vertex);
   v1::ProbeReading& reading = *frame.add_probes();
@@ -79,12 +81,14 @@ absl::Status AddScalars(const Model& model, const State& state, v1::Frame& frame
 }  // namespace
 
 absl::Status AppendBodies(const Model& model, const Layout& layout, const State& state, std::string& positions,
-                          std::string& poses) {
-  if (absl::Status status = AppendPositions(model, layout, state, positions); !status.ok()) return status;
+                          std::string& poses, const Scratch& scratch) {
+  absl::Status placed = AppendPositions(model, layout, state, scratch, positions);
+  if (!placed.ok()) return placed;
   return AppendPoses(state, poses);
 }
 
-absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, const Snapshot& snapshot) {
+absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, const Snapshot& snapshot,
+                                    const Scratch& scratch) {
   const State& state = snapshot.state;
   v1::Frame frame;
   frame.set_sequence(snapshot.sequence);
@@ -94,13 +98,13 @@ absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, co
   frame.set_phase(state.phase - std::floor(state.phase));
   frame.set_unix_nanos(absl::ToUnixNanos(snapshot.made));
   if (!std::isfinite(frame.time()) || !std::isfinite(frame.breath())) return NotFinite("the time", state);
-  absl::Status placed = AppendBodies(model, layout, state, *frame.mutable_positions(), *frame.mutable_poses());
+  absl::Status placed = AppendBodies(model, layout, state, *frame.mutable_positions(), *frame.mutable_poses(), scratch);
   if (!placed.ok()) return placed;
   if (absl::Status status = AddScalars(model, state, frame); !status.ok()) return status;
   for (const Probe& probe : model.probes) {
-    if (absl::Status status = AddProbe(model, state, probe, frame); !status.ok()) return status;
+    if (absl::Status status = AddProbe(model, state, probe, scratch, frame); !status.ok()) return status;
   }
-  *frame.mutable_measures() = ReadMeasures(model, MakeEvalContext(model, snapshot.parameters, state));
+  *frame.mutable_measures() = ReadMeasures(model, MakeEvalContext(model, snapshot.parameters, state, scratch));
   for (const v1::MeasureReading& reading : frame.measures()) {
     if (!std::isfinite(reading.value())) return NotFinite(absl::StrCat("measure ", reading.name()), state);
   }

@@ -24,12 +24,14 @@ struct Snapshot {
 // Computes the positions of every streamed body and every pose of the snapshot. INTERNAL if a number is not finite as
 // float32; such a frame is not sent. Positions and poses are little-endian float32 [m], body after body in the order of
 // the model (proto/README.md); a pose is a quaternion x, y, z, w and a translation. Adds probes, scalar coordinates and
-// measures. Thread-safe; the publisher's thread calls it.
-absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, const Snapshot& snapshot);
+// measures. Thread-safe, for threads with scratch memory of their own; the publisher's thread calls it.
+absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, const Snapshot& snapshot,
+                                    const Scratch& scratch = {});
 
-// Appends the positions of every streamed body and every pose, in the same form. The errors of MakeFrame. Thread-safe.
+// Appends the positions of every streamed body and every pose, in the same form. The errors of MakeFrame. Thread-safe
+// in the same way.
 absl::Status AppendBodies(const Model& model, const Layout& layout, const State& state, std::string& positions,
-                          std::string& poses);
+                          std::string& poses, const Scratch& scratch = {});
 
 }  // namespace phrenic::stream
 

@@ -1,7 +1,6 @@
 #include "server/mechanics/measures/highest.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 #include "absl/strings/str_cat.h"
@@ -9,36 +8,6 @@
 
 namespace phrenic {
 namespace {
-
-// The body that was placed last, since several measures of a moment have the same body: both sides of a diaphragm.
-struct PlacedBody {
-  const Points* rest = nullptr;  // of the body; null: none was placed
-  // What it was placed by: it is placed again if that changes.
-  Points x;
-  std::vector<Pose> poses;
-  Points placed;  // 3 x vertices of the body [m]
-};
-
-bool SamePose(const Pose& a, const Pose& b) {
-  return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
-}
-
-bool IsPlacedBy(const PlacedBody& body, const EvalContext& at) {
-  return body.x.cols() == at.x.cols() &&
-         std::memcmp(body.x.data(), at.x.data(), sizeof(double) * static_cast<std::size_t>(at.x.size())) == 0 &&
-         std::equal(body.poses.begin(), body.poses.end(), at.poses.begin(), at.poses.end(), SamePose);
-}
-
-// Returns the positions of a body, valid until the next call with the same scratch memory.
-const Points& PlacedAt(const BodyPoints& body, const EvalContext& at) {
-  PlacedBody& kept = at.scratch.Get<PlacedBody>();
-  if (kept.rest == &body.rest() && IsPlacedBy(kept, at)) return kept.placed;
-  kept.placed = body.Positions(at);
-  kept.rest = &body.rest();
-  kept.x = at.x;
-  kept.poses = at.poses;
-  return kept.placed;
-}
 
 class HighestMeasure final : public Measure {
  public:
@@ -50,7 +19,7 @@ class HighestMeasure final : public Measure {
         direction_(direction),
         zero_(zero) {}
 
-  double Value(const EvalContext& at) const override { return Furthest(PlacedAt(body_, at)) - zero_; }
+  double Value(const EvalContext& at) const override { return Furthest(body_.Positions(at)) - zero_; }
   // Makes the value relative to that at rest.
   void MeasureFromRest() { zero_ = Furthest(body_.rest()); }
 

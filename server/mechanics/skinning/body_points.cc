@@ -1,6 +1,7 @@
 #include "server/mechanics/skinning/body_points.h"
 
 #include <Eigen/Geometry>
+#include <cstring>
 #include <vector>
 
 #include "server/mechanics/skinning/sheet_points.h"
@@ -13,6 +14,18 @@ namespace {
 struct Placements {
   std::vector<double> positions, moving_positions, moving_velocities;
 };
+
+// The layers that were placed last: a frame, its probes and its measures are about the same ones.
+struct PlacedLayers {
+  const TriangleBinding* bindings = nullptr;  // null: none were placed
+  Points sheet;                               // where its vertices were [m]
+  Points x;                                   // [m]
+};
+
+bool SameBits(const Points& a, const ConstPoints& b) {
+  return a.cols() == b.cols() &&
+         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+}
 
 Eigen::Map<Points> Fit(std::vector<double>& memory, const Points& like) {
   memory.resize(static_cast<size_t>(like.size()));
@@ -85,7 +98,9 @@ BodyPoints::BodyPoints(const Model& model, int body)
 template <bool kVelocities>
 void BodyPoints::Follow(const EvalContext& at, MutablePoints x, MutablePoints v) const {
   if (sheet_ != nullptr) {
-    return kVelocities ? MoveOnSheet(*sheet_, triangles_, at, x, v) : PlaceOnSheet(*sheet_, triangles_, at, x);
+    if (kVelocities) return MoveOnSheet(*sheet_, triangles_, at, x, v);
+    x = OnSheet(at);
+    return;
   }
   Placed out{x, v};
   if (!triangles_.empty()) return PlaceOnTriangles<kVelocities>(triangles_, at, out);
@@ -95,6 +110,18 @@ void BodyPoints::Follow(const EvalContext& at, MutablePoints x, MutablePoints v)
   const DriverState drivers = {PoseMatricesOf(at), driver_rest_, at.x.data(), at.v.data()};
   ApplySkinWeights(weights_, drivers, rest_->data(), x.data(), kVelocities ? v.data() : nullptr);
   for (const auto& correction : corrections_) kVelocities ? correction->Move(at, x, v) : correction->Place(at, x);
+}
+
+const Points& BodyPoints::OnSheet(const EvalContext& at) const {
+  PlacedLayers& last = at.scratch.Get<PlacedLayers>();
+  const ConstPoints sheet = at.x.middleCols(sheet_->first_vertex, sheet_->rest_areas.size());
+  if (last.bindings == triangles_.data() && SameBits(last.sheet, sheet)) return last.x;
+  last.bindings = nullptr;
+  last.x.resize(3, rest_->cols());
+  PlaceOnSheet(*sheet_, triangles_, at, last.x);
+  last.sheet = sheet;
+  last.bindings = triangles_.data();
+  return last.x;
 }
 
 void BodyPoints::Place(const EvalContext& at, MutablePoints x) const {
@@ -107,6 +134,7 @@ void BodyPoints::Place(const EvalContext& at, MutablePoints x) const {
 
 ConstPoints BodyPoints::Positions(const EvalContext& at) const {
   if (first_vertex_ >= 0) return at.x.middleCols(first_vertex_, rest_->cols());
+  if (sheet_ != nullptr) return OnSheet(at);
   Eigen::Map<Points> x = Fit(at.scratch.Get<Placements>().positions, *rest_);
   Follow<false>(at, x, x);
   return x;

@@ -23,7 +23,8 @@ class BodyPoints {
   // Returns both. They are valid as long as the context, and until the next call with the same scratch memory.
   // Allocates if this is the largest body located with that memory so far.
   Moving Locate(const EvalContext& at) const;
-  // Returns positions only, at half the cost.
+  // Returns positions only, at half the cost; for the layers of a sheet at that of a comparison, if the same scratch
+  // memory placed them last, for the same positions of the sheet.
   ConstPoints Positions(const EvalContext& at) const;
   // Sets x to the positions, 3 x vertices of the body [m].
   void Place(const EvalContext& at, MutablePoints x) const;
@@ -35,6 +36,7 @@ class BodyPoints {
  private:
   template <bool kVelocities>
   void Follow(const EvalContext& at, MutablePoints x, MutablePoints v) const;
+  const Points& OnSheet(const EvalContext& at) const;
 
   const Points* rest_;
   int first_vertex_ = -1;

@@ -9,8 +9,9 @@
 namespace phrenic {
 
 // Returns the probe's position [m] in `state`, whether its body is simulated, rigid (x = R X + t), skinned or fixed.
-// Allocates for a skinned body, all of whose vertices it places. Thread-safe.
-Eigen::Vector3d ProbePosition(const Model& model, const State& state, const Probe& probe);
+// Places all vertices of a skinned body (BodyPoints::Positions). Thread-safe, for threads with scratch memory of their
+// own.
+Eigen::Vector3d ProbePosition(const Model& model, const State& state, const Probe& probe, const Scratch& scratch = {});
 
 }  // namespace phrenic
 

@@ -80,6 +80,20 @@ Points Smooth(const Points& rest) {
   return moved;
 }
 
+// Scratch memory keeps the layers that were placed last: not for another state, and not for another layer.
+TEST(SheetSkin, KeptMemoryGivesTheBitsOfFreshMemory) {
+  const auto model = Shells();
+  const Scratch kept;
+  for (const double by : {0.0, 0.001, 0.001, 0.0}) {
+    for (const int layer : {0, 1, 1, 0}) {
+      const Points middle = Jolted(Middle(*model), by);
+      Points out(3, Rest(*model, layer).cols());
+      PlaceBody(*model, WithMiddle(*model, middle), 2 + layer, out, kept);
+      EXPECT_TRUE(out == Placed(*model, middle, layer)) << by << " " << layer;
+    }
+  }
+}
+
 TEST(SheetSkin, AtRestLeavesTheLayersWhereTheyAre) {
   const auto model = Shells();
   for (const int layer : {0, 1}) {
