@@ -23,7 +23,8 @@ struct SheetTriangle {
   Eigen::Vector3d a, b, c;
   SheetTriangle(const ConstPoints& x, const Eigen::Vector3i& t) : a(x.col(t[0])), b(x.col(t[1])), c(x.col(t[2])) {}
   Eigen::Vector3d At(const Eigen::Vector3d& weights) const { return weights[0] * a + weights[1] * b + weights[2] * c; }
-  Eigen::Vector3d Normal() const { return (b - a).cross(c - a).stableNormalized(); }
+  Eigen::Vector3d Area() const { return (b - a).cross(c - a); }  // twice that of the triangle [m^2]
+  Eigen::Vector3d Normal() const { return Area().stableNormalized(); }
 };
 
 bool HasSide(const SurfacePoint& nearest) {
@@ -66,10 +67,14 @@ SheetObstacle::SheetObstacle(std::shared_ptr<const Obstacle> obstacle, const Mod
 
 bool SheetObstacle::IsNear(const ConstPoints& sheet, const Vertex& vertex, const Eigen::Vector3d& point) const {
   const SheetTriangle triangle(sheet, obstacle_->tree.triangle(vertex.triangle));
-  const Eigen::Vector3d offset = point - triangle.At(vertex.foot);
-  const double height = offset.dot(triangle.Normal());
+  const Eigen::Vector3d offset = point - triangle.At(vertex.foot), area = triangle.Area();
+  const double above = offset.dot(area), squared = area.squaredNorm(), least = vertex.least + kHeightSlack;
+  // Most vertices are far: (least + slope slid)^2 <= 2 (least^2 + slope^2 |offset|^2).
+  const double most = 2 * (least * least + kHeightSlope * kHeightSlope * offset.squaredNorm());
+  if (above > 0 && above * above > squared * most) return false;
+  const double height = above / std::sqrt(squared);
   const double slid = std::sqrt(std::max(0.0, offset.squaredNorm() - height * height));
-  return height < vertex.least + kHeightSlack + kHeightSlope * slid;
+  return !(height >= least + kHeightSlope * slid);
 }
 
 template <typename Correct>
