@@ -74,10 +74,20 @@ double Middle(const LabelVolume& volume, const std::vector<Part>& parts, const s
   return count > 0 ? sum / count : 0;
 }
 
+bool HasRibs(const std::vector<Part>& parts, v1::Side side) {
+  return std::any_of(parts.begin(), parts.end(),
+                     [side](const Part& part) { return part.Is(v1::STRUCTURE_RIB) && part.anatomy.side() == side; });
+}
+
 void AddNumberedRibs(const LabelVolume& volume, const std::vector<Mask>& ribs, std::vector<Part>& parts,
                      Messages& fallbacks) {
   const double middle = Middle(volume, parts, ribs);
   for (const auto side : {v1::SIDE_RIGHT, v1::SIDE_LEFT}) {
+    if (HasRibs(parts, side)) {
+      fallbacks.push_back(absl::StrCat("ribs on the ", SideWord(side),
+                                       ": a label of ribs without a number was left out, because others have numbers"));
+      continue;
+    }
     std::vector<std::pair<double, const Mask*>> found;
     for (const Mask& rib : ribs) {
       const bool left = Centroid(volume, rib).x() > middle;

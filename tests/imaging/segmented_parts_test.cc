@@ -65,6 +65,28 @@ TEST_P(RibsInOneLabel, GetTheirSidesAndNumbers) {
   }
 }
 
+// A thirteenth rib has no place in the maps, and must not become a second "rib-1-left".
+TEST(RibsWithNumbers, StayAloneBesideALabelOfRibsWithoutANumber) {
+  v1::LabelMap map = *ReadLabelMap("totalsegmentator");
+  auto volume = MakePhantom(*FindPhantomBody("adult"), {.voxel = 4, .noise = 0, .holes = 0}, map);
+  ASSERT_TRUE(volume.ok()) << volume.status();
+  for (v1::LabelMeaning& label : *map.mutable_labels()) {
+    if (label.name() != "rib_left_12") continue;
+    label.set_name("ribs");
+    label.mutable_anatomy()->set_number(0);
+    label.mutable_anatomy()->set_side(v1::SIDE_UNSPECIFIED);
+  }
+  Messages fallbacks;
+  const auto parts = FindParts(*volume, map, fallbacks);
+  ASSERT_TRUE(parts.ok()) << parts.status();
+  const auto named = [&](const char* name) {
+    return std::count_if(parts->begin(), parts->end(), [&](const Part& part) { return part.name == name; });
+  };
+  EXPECT_EQ(named("rib-1-left"), 1);
+  EXPECT_EQ(named("rib-12-left"), 0);
+  EXPECT_THAT(fallbacks, testing::Contains(testing::HasSubstr("without a number was left out")));
+}
+
 // The bodies whose lowest ribs are less than two voxels apart.
 INSTANTIATE_TEST_SUITE_P(Bodies, RibsInOneLabel, testing::Values("small", "flat"));
 

@@ -25,32 +25,45 @@ absl::Status Damaged(const std::string& name, archive* reader) {
                                                  "; pack the label files again, or give them one by one"));
 }
 
-// Appends the file that the reader is at. `left` is what all files may still have [bytes].
-absl::Status ReadEntry(const std::string& name, archive* reader, std::size_t& left, std::string& bytes) {
+// Appends the next block of the file that the reader is at; nothing at its end. `left` is what all files may still have
+// [bytes].
+absl::Status ReadBlock(const std::string& name, archive* reader, std::size_t& left, std::string& bytes) {
   constexpr std::size_t kBlock = std::size_t{1} << 18;
   std::string block(kBlock, '\0');
-  while (true) {
-    const la_ssize_t got = archive_read_data(reader, block.data(), block.size());
-    if (got < 0) return Damaged(name, reader);
-    if (got == 0) return absl::OkStatus();
-    const auto size = static_cast<std::size_t>(got);
-    if (size > left)
-      return absl::ResourceExhaustedError(
-          absl::StrCat(name, ": its files have more than 4 GiB; pack only label files"));
-    left -= size;
-    bytes.append(block, 0, size);
-  }
+  const la_ssize_t got = archive_read_data(reader, block.data(), block.size());
+  if (got < 0) return Damaged(name, reader);
+  const auto size = static_cast<std::size_t>(got);
+  if (size > left)
+    return absl::ResourceExhaustedError(absl::StrCat(name, ": its files have more than 4 GiB; pack only label files"));
+  left -= size;
+  bytes.append(block, 0, size);
+  return absl::OkStatus();
 }
 
-absl::Status AddFile(const std::string& file, std::string_view bytes, const std::string& choice, std::size_t max_voxels,
-                     LabelSet& labels) {
+// Adds the file that the reader is at. One that is no label file is left out after its first block: it may be huge.
+absl::Status AddFile(const std::string& name, archive* reader, const std::string& file, const std::string& choice,
+                     std::size_t max_voxels, std::size_t& left, LabelSet& labels) {
+  std::string bytes;
+  if (absl::Status status = ReadBlock(name, reader, left, bytes); !status.ok()) return status;
   if (!IsLabelFile(bytes)) {
     labels.LeaveOut(file);
     return absl::OkStatus();
   }
+  for (std::size_t before = 0; before < bytes.size();) {
+    before = bytes.size();
+    if (absl::Status status = ReadBlock(name, reader, left, bytes); !status.ok()) return status;
+  }
   absl::StatusOr<LabelVolume> volume = ParseLabels(file, bytes, max_voxels);
   if (!volume.ok()) return volume.status();
   return labels.Add(file, *std::move(volume), choice);
+}
+
+// Returns the path of a file in the archive. libarchive cannot convert all of UTF-8 in the locale "C".
+std::string PathOf(archive_entry* entry, int number) {
+  for (const char* path : {archive_entry_pathname_utf8(entry), archive_entry_pathname(entry)}) {
+    if (path != nullptr) return path;
+  }
+  return absl::StrCat("file ", number);
 }
 
 }  // namespace
@@ -71,17 +84,16 @@ absl::StatusOr<LabelVolume> ParseLabelArchive(const std::string& name, std::stri
   archive_entry* entry = nullptr;
   std::size_t left = kMostBytes;
   int code = ARCHIVE_OK, entries = 0;
-  while ((code = archive_read_next_header(reader.get(), &entry)) == ARCHIVE_OK) {
+  while ((code = archive_read_next_header(reader.get(), &entry)) == ARCHIVE_OK || code == ARCHIVE_WARN) {
     if (++entries > kMostEntries) {
       return absl::ResourceExhaustedError(
           absl::StrCat(name, ": has more than ", kMostEntries, " files; pack only label files"));
     }
-    const char* path = archive_entry_pathname(entry);
-    if (path == nullptr || archive_entry_filetype(entry) != AE_IFREG) continue;
-    const std::string file = path;
-    std::string content;
-    if (absl::Status status = ReadEntry(name, reader.get(), left, content); !status.ok()) return status;
-    if (absl::Status status = AddFile(file, content, choice, max_voxels, labels); !status.ok()) return status;
+    if (archive_entry_filetype(entry) != AE_IFREG) continue;
+    const std::string file = PathOf(entry, entries);
+    if (absl::Status status = AddFile(name, reader.get(), file, choice, max_voxels, left, labels); !status.ok()) {
+      return status;
+    }
   }
   if (code != ARCHIVE_EOF) return Damaged(name, reader.get());
   if (labels.empty()) {
