@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_replace.h"
@@ -165,6 +167,17 @@ void AddWhole(const LabelVolume& volume, const v1::LabelMeaning& label, const Ex
 
 }  // namespace
 
+// Bodies, and the files of their surfaces, are named after labels.
+absl::Status CheckLabelName(const v1::LabelMeaning& label) {
+  const std::string& name = label.name();
+  const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
+    return absl::ascii_isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == ' ';
+  });
+  if (plain && !name.empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("label ", label.number(), ": the name \"", absl::CHexEscape(name),
+                                                 "\" needs letters, digits, \"_\", \"-\" and spaces; correct the map"));
+}
+
 absl::StatusOr<std::vector<Part>> FindParts(const LabelVolume& volume, const v1::LabelMap& map, Messages& fallbacks) {
   const std::map<Label, Extent> extents = Extents(volume);
   const int margin = SurfaceMargin(volume);
@@ -173,6 +186,7 @@ absl::StatusOr<std::vector<Part>> FindParts(const LabelVolume& volume, const v1:
   for (const v1::LabelMeaning& label : map.labels()) {
     const auto extent = extents.find(static_cast<Label>(label.number()));
     if (extent == extents.end()) continue;
+    if (absl::Status status = CheckLabelName(label); !status.ok()) return status;
     if (!IsMany(label.anatomy())) {
       AddWhole(volume, label, extent->second, parts, fallbacks);
       continue;

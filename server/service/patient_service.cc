@@ -32,7 +32,8 @@ grpc::Status PatientService::InspectLabels(grpc::CallbackServerContext* context,
   if (!caller.ok()) return ToGrpc(caller.status());
   const auto running = inspections_.Take(guard_.ShareOf(*caller));
   if (!running.ok()) return ToGrpc(running.status());
-  auto table = patients_.Inspect(*request, guard_.RequesterOf(*caller, *context));
+  auto table =
+      patients_.Inspect(*request, guard_.RequesterOf(*caller, *context), [context] { return context->IsCancelled(); });
   if (!table.ok()) return ToGrpc(table.status());
   *response = *std::move(table);
   return grpc::Status::OK;

@@ -76,7 +76,8 @@ TEST(PatientCommand, AFolderOfFilesIsOnePatient) {
   const Outcome made = MakeCoarsePatient(folder);
   ASSERT_EQ(made.code, 0) << made.err;
   std::set<std::string> bodies;
-  for (const auto& surface : made.json()["surfaces"]) bodies.insert(surface["body"].get<std::string>());
+  const nlohmann::json report = made.json();
+  for (const auto& surface : report["surfaces"]) bodies.insert(surface["body"].get<std::string>());
   for (const char* body : {"rib-5-left", "rib-5-right", "t12", "sternum", "lung-upper-lobe-left"}) {
     EXPECT_TRUE(bodies.contains(body)) << body;
   }

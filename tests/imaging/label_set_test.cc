@@ -210,6 +210,15 @@ TEST(LabelSet, AnArchiveIsReadAsItsFiles) {
   }
 }
 
+TEST(LabelSet, ReadingAnArchiveEndsWhenItIsNotWantedAnyMore) {
+  const std::string liver = Nifti(Alone("liver"));
+  int asked = 0;
+  const auto stopped = [&asked] { return ++asked > 1; };
+  const auto input = ParseLabelInput("labels", Tar({{"a.nii", liver}, {"b.nii", liver}}), "", kMaxVoxels, stopped);
+  EXPECT_TRUE(absl::IsCancelled(input.status())) << input.status();
+  EXPECT_EQ(asked, 2);
+}
+
 TEST(LabelSet, AFolderAndFilesWithTheirOwnMapsAreRead) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "label_set";
   std::filesystem::create_directories(folder / "model");

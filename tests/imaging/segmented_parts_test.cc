@@ -88,6 +88,22 @@ TEST(RibsWithNumbers, StayAloneBesideALabelOfRibsWithoutANumber) {
 }
 
 // The bodies whose lowest ribs are less than two voxels apart.
+// Files are named after labels.
+TEST(LabelNames, AreNoPaths) {
+  v1::LabelMap map = *ReadLabelMap("totalsegmentator");
+  const auto volume = MakePhantom(*FindPhantomBody("small"), {.voxel = 4}, map);
+  ASSERT_TRUE(volume.ok()) << volume.status();
+  for (const char* name : {"../../lung", "lung.left", "", "a\\b", "lung\n"}) {
+    map.mutable_labels(0)->set_name(name);
+    for (v1::LabelMeaning& label : *map.mutable_labels()) {
+      if (IsRib(label)) label.set_name(name);
+    }
+    Messages fallbacks;
+    const absl::Status status = FindParts(*volume, map, fallbacks).status();
+    EXPECT_TRUE(absl::IsInvalidArgument(status)) << name << ": " << status;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Bodies, RibsInOneLabel, testing::Values("small", "flat"));
 
 }  // namespace

@@ -73,7 +73,8 @@ bool IsArchive(std::string_view bytes) {
 }
 
 absl::StatusOr<LabelVolume> ParseLabelArchive(const std::string& name, std::string_view bytes,
-                                              const std::string& choice, std::size_t max_voxels) {
+                                              const std::string& choice, std::size_t max_voxels,
+                                              const std::function<bool()>& stopped) {
   const ArchiveReader reader(archive_read_new(), &archive_read_free);
   archive_read_support_format_zip(reader.get());
   archive_read_support_format_tar(reader.get());
@@ -89,6 +90,7 @@ absl::StatusOr<LabelVolume> ParseLabelArchive(const std::string& name, std::stri
       return absl::ResourceExhaustedError(
           absl::StrCat(name, ": has more than ", kMostEntries, " files; pack only label files"));
     }
+    if (stopped != nullptr && stopped()) return absl::CancelledError(absl::StrCat(name, ": reading was cancelled"));
     if (archive_entry_filetype(entry) != AE_IFREG) continue;
     const std::string file = PathOf(entry, entries);
     if (absl::Status status = AddFile(name, reader.get(), file, choice, max_voxels, left, labels); !status.ok()) {

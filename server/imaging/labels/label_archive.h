@@ -3,6 +3,7 @@
 #define PHRENIC_SERVER_IMAGING_LABELS_LABEL_ARCHIVE_H_
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -17,9 +18,11 @@ bool IsArchive(std::string_view bytes);
 // Reads every label file of an archive (label_file.h) as one volume (label_set.h); `choice` selects maps, as ReadMaps.
 // Files of other formats are left out, and a remark names them; archives in the archive are not read. INVALID_ARGUMENT
 // "name: ..." for a damaged archive, or one without label files; RESOURCE_EXHAUSTED for a file of more voxels, 4 GiB
-// of files or 5,000 entries; the errors of ParseLabels and LabelSet. Thread-safe.
+// of files or 5,000 entries; CANCELLED when `stopped`, asked before each file, is true; the errors of ParseLabels and
+// LabelSet. Thread-safe.
 absl::StatusOr<LabelVolume> ParseLabelArchive(const std::string& name, std::string_view bytes,
-                                              const std::string& choice, std::size_t max_voxels = kMaxVoxels);
+                                              const std::string& choice, std::size_t max_voxels = kMaxVoxels,
+                                              const std::function<bool()>& stopped = nullptr);
 
 }  // namespace phrenic::imaging
 

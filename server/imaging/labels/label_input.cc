@@ -121,9 +121,9 @@ class SetReader {
 }  // namespace
 
 absl::StatusOr<LabelInput> ParseLabelInput(std::string_view name, std::string_view bytes, const std::string& choice,
-                                           std::size_t max_voxels) {
+                                           std::size_t max_voxels, const std::function<bool()>& stopped) {
   absl::StatusOr<LabelVolume> volume = IsArchive(bytes)
-                                           ? ParseLabelArchive(std::string(name), bytes, choice, max_voxels)
+                                           ? ParseLabelArchive(std::string(name), bytes, choice, max_voxels, stopped)
                                            : ParseLabels(name, bytes, max_voxels);
   if (!volume.ok()) return volume.status();
   return WithMeanings(name, *std::move(volume), choice);

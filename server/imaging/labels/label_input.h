@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_IMAGING_LABELS_LABEL_INPUT_H_
 #define PHRENIC_SERVER_IMAGING_LABELS_LABEL_INPUT_H_
 
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -23,10 +24,11 @@ struct LabelInput {
 };
 
 // Parses a label file (label_file.h) or an archive of several (label_archive.h). Names in the files count before
-// numbers; `choice` selects the map of numbers, as ReadMaps: empty, the map that fits best. The errors of ParseLabels,
-// ParseLabelArchive and ReadMaps. Thread-safe.
+// numbers; `choice` selects the map of numbers, as ReadMaps: empty, the map that fits best. Reading an archive ends
+// when `stopped` is true. The errors of ParseLabels, ParseLabelArchive and ReadMaps. Thread-safe.
 absl::StatusOr<LabelInput> ParseLabelInput(std::string_view name, std::string_view bytes, const std::string& choice,
-                                           std::size_t max_voxels = kMaxVoxels);
+                                           std::size_t max_voxels = kMaxVoxels,
+                                           const std::function<bool()>& stopped = nullptr);
 
 // The maps of files; each as `choice` of ReadMaps.
 struct MapChoices {

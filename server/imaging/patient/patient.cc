@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -98,7 +100,7 @@ void AddDerived(DerivedDiaphragm diaphragm, const FittedCage& cage, Patient& pat
   Mesh wall = cage.Tube();
   wall.vertices *= kMillimetre;
   std::vector<PatientBody> bodies;
-  bodies.push_back({"diaphragm", sheet, std::move(diaphragm.mesh)});
+  bodies.push_back({kSheetBody, sheet, std::move(diaphragm.mesh)});
   bodies.push_back({kMiddleBody, sheet, std::move(diaphragm.middle)});
   bodies.push_back({kWallBody, inner_cage, std::move(wall)});
   patient.bodies.insert(patient.bodies.begin(), std::make_move_iterator(bodies.begin()),
@@ -119,6 +121,18 @@ void ReportRibs(const CageFrame& frame, Patient& patient) {
   }
 }
 
+// INVALID_ARGUMENT if two bodies would have one name.
+absl::Status CheckBodyNames(const std::vector<Part>& parts) {
+  std::set<std::string> names = {kSheetBody, kMiddleBody, kWallBody};
+  for (const Part& part : parts) {
+    if (!HasSurface(part) || names.insert(part.name).second) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat("two bodies would have the name \"", part.name,
+                     "\"; give labels of one structure the same name in the map, and others names of their own"));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<Patient> MakePatient(const LabelVolume& given, const v1::LabelMap& map, const v1::Scene& pattern,
@@ -136,6 +150,7 @@ absl::StatusOr<Patient> MakePatient(const LabelVolume& given, const v1::LabelMap
   *patient.report.mutable_fill() = filled.report;
   const std::vector<Part>& parts = filled.parts;
   if (absl::Status status = CheckParts(filled); !status.ok()) return status;
+  if (absl::Status status = CheckBodyNames(parts); !status.ok()) return status;
   const absl::StatusOr<CageFrame> frame = FindCageFrame(filled.volume, parts, fallbacks);
   if (!frame.ok()) return frame.status();
   absl::Status status = AddSurfaces(filled.volume, parts, options, progress, patient);

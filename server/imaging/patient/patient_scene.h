@@ -11,7 +11,7 @@
 namespace phrenic::imaging {
 
 // Names of the bodies that are derived for mechanics, as in the pattern.
-inline constexpr char kMiddleBody[] = "diaphragm-middle", kWallBody[] = "chest-wall";
+inline constexpr char kSheetBody[] = "diaphragm", kMiddleBody[] = "diaphragm-middle", kWallBody[] = "chest-wall";
 
 // Returns the width of the cage relative to the generated thorax, to which the pattern belongs.
 double ScaleOf(const CageFrame& frame);

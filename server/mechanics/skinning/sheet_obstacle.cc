@@ -116,6 +116,9 @@ absl::Status AddObstacle(const v1::Skin& scene, std::string_view path, ModelBuil
   if (!bodies.ok()) return bodies.status();
   const auto body = builder.Body(scene.obstacle(), field);
   if (!body.ok()) return body.status();
+  if (builder.model.bodies[*body].first_vertex < 0) {
+    return FieldError(field, absl::StrCat("body \"", scene.obstacle(), "\" must have ROLE_DEFORMABLE; name the sheet"));
+  }
   const auto triangles = DriverTriangles(builder, {*body}, field);
   if (!triangles.ok()) return triangles.status();
   const auto obstacle = std::make_shared<const Obstacle>(builder, *triangles);

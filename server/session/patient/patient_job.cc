@@ -34,7 +34,8 @@ absl::Status CheckVerdict(const v1::Readiness& readiness, bool anyway) {
 
 }  // namespace
 
-absl::StatusOr<imaging::LabelInput> ReadLabelUpload(const Uploads::Held& labels, const std::string& map) {
+absl::StatusOr<imaging::LabelInput> ReadLabelUpload(const Uploads::Held& labels, const std::string& map,
+                                                    const std::function<bool()>& stopped) {
   const bool plain = std::all_of(map.begin(), map.end(),
                                  [](char c) { return absl::ascii_isalnum(static_cast<unsigned char>(c)) || c == '-'; });
   const absl::StatusOr<std::vector<imaging::MapFit>> maps =
@@ -45,7 +46,7 @@ absl::StatusOr<imaging::LabelInput> ReadLabelUpload(const Uploads::Held& labels,
   }
   const absl::StatusOr<std::string> bytes = labels.Bytes();
   if (!bytes.ok()) return bytes.status();
-  return imaging::ParseLabelInput(Uploads::kLabelsName, *bytes, map, kMostVoxels);
+  return imaging::ParseLabelInput(Uploads::kLabelsName, *bytes, map, kMostVoxels, stopped);
 }
 
 std::string LabelFormat(const Uploads::Held& labels) {
@@ -56,7 +57,8 @@ std::string LabelFormat(const Uploads::Held& labels) {
 }
 
 absl::StatusOr<imaging::Patient> PatientJob::Make(imaging::PatientProgress progress) const {
-  absl::StatusOr<imaging::LabelInput> input = ReadLabelUpload(start_.labels, start_.request.map());
+  absl::StatusOr<imaging::LabelInput> input =
+      ReadLabelUpload(start_.labels, start_.request.map(), [&] { return !progress(0, "reading"); });
   if (!input.ok()) return input.status();
   const bool named = !start_.request.labels().empty();
   const auto map = ApplyLabels(named ? start_.request.labels() : input->meanings.labels(), input->volume);

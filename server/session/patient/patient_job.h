@@ -2,6 +2,7 @@
 #ifndef PHRENIC_SERVER_SESSION_PATIENT_PATIENT_JOB_H_
 #define PHRENIC_SERVER_SESSION_PATIENT_PATIENT_JOB_H_
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,8 +20,10 @@ namespace phrenic::session {
 inline constexpr std::size_t kMostVoxels = std::size_t{1} << 28;
 
 // Reads an uploaded label volume, with its labels' meanings by the map of that name (imaging::ReadMaps). The errors of
-// imaging::ParseLabelInput; RESOURCE_EXHAUSTED above kMostVoxels; INVALID_ARGUMENT for an unknown map.
-absl::StatusOr<imaging::LabelInput> ReadLabelUpload(const Uploads::Held& labels, const std::string& map);
+// imaging::ParseLabelInput, which `stopped` ends; RESOURCE_EXHAUSTED above kMostVoxels; INVALID_ARGUMENT for an unknown
+// map.
+absl::StatusOr<imaging::LabelInput> ReadLabelUpload(const Uploads::Held& labels, const std::string& map,
+                                                    const std::function<bool()>& stopped);
 // Returns "DICOM", "NIfTI" or "archive", by the first bytes.
 std::string LabelFormat(const Uploads::Held& labels);
 

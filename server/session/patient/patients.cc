@@ -31,12 +31,12 @@ Patients::Patients(Models& models, Uploads& uploads, const Limits& limits, const
              clock, jobs::Records("patient", nullptr)) {}
 
 absl::StatusOr<v1::InspectLabelsResponse> Patients::Inspect(const v1::InspectLabelsRequest& request,
-                                                            const Requester& by) {
+                                                            const Requester& by, const std::function<bool()>& stopped) {
   const auto labels = uploads_.Hold(by, request.path());
   if (!labels.ok()) return labels.status();
   const auto names = imaging::ReadLabelMap(imaging::kNamesMap);
   if (!names.ok()) return names.status();
-  const auto input = ReadLabelUpload(*labels, request.map());
+  const auto input = ReadLabelUpload(*labels, request.map(), stopped);
   if (!input.ok()) return input.status();
   auto table = DescribeLabels(*input, imaging::WithCommonNames(*names));
   if (!table.ok()) return table;

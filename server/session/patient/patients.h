@@ -27,8 +27,10 @@ class Patients {
   Patients(Models& models, Uploads& uploads, const Limits& limits, const Clock& clock);
 
   // Returns the table of an uploaded volume (DescribeLabels). NOT_FOUND for an upload that the requester does not have;
-  // the errors of ReadLabelUpload and imaging::ReadLabelMap. Runs on the calling thread, for seconds.
-  absl::StatusOr<v1::InspectLabelsResponse> Inspect(const v1::InspectLabelsRequest& request, const Requester& by);
+  // the errors of ReadLabelUpload and imaging::ReadLabelMap. Runs on the calling thread, for seconds; `stopped` ends
+  // it.
+  absl::StatusOr<v1::InspectLabelsResponse> Inspect(const v1::InspectLabelsRequest& request, const Requester& by,
+                                                    const std::function<bool()>& stopped);
   // Queues a patient. NOT_FOUND for an upload that the requester does not have, or a server without the scene "thorax";
   // INVALID_ARGUMENT for more than 1,000 labels; the errors of jobs::Queue::Add.
   absl::StatusOr<v1::Patient> Add(const v1::CreatePatientRequest& request, const Requester& by);

@@ -104,7 +104,8 @@ TEST(SheetObstacle, ErrorsNameTheField) {
   const auto error = [](const std::string& skin) {
     return std::string(TryCompileText(DomeUnderLung(skin)).status().message());
   };
-  EXPECT_THAT(error("obstacle: 'bone'"), testing::HasSubstr("motions[0].skin.obstacle: body \"bone\" is not ROLE_DEF"));
+  EXPECT_THAT(error("obstacle: 'bone'"),
+              testing::HasSubstr("motions[0].skin.obstacle: body \"bone\" must have ROLE_DEFORMABLE"));
   EXPECT_THAT(error("obstacle: 'no'"), testing::HasSubstr("motions[0].skin.obstacle"));
   EXPECT_THAT(error("obstacle: 'sheet' mode: SKIN_MODE_BAR"),
               testing::HasSubstr("motions[0].skin.obstacle: only SKIN_MODE_NEAREST_VERTICES"));
