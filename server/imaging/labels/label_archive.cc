@@ -33,8 +33,9 @@ absl::Status ReadBlock(const std::string& name, archive* reader, std::size_t& le
   const la_ssize_t got = archive_read_data(reader, block.data(), block.size());
   if (got < 0) return Damaged(name, reader);
   const auto size = static_cast<std::size_t>(got);
-  if (size > left)
+  if (size > left) {
     return absl::ResourceExhaustedError(absl::StrCat(name, ": its files have more than 4 GiB; pack only label files"));
+  }
   left -= size;
   bytes.append(block, 0, size);
   return absl::OkStatus();
