@@ -15,8 +15,8 @@ class SurfaceWalk {
   explicit SurfaceWalk(const TriangleTree& tree);
 
   // Walks from triangle `from`, in the tree's order, to the triangle nearest to `point` of those that share a vertex
-  // with it, as long as that is nearer. Returns the point where it ends: the nearest of the surface unless another part
-  // of it is nearer and there is none nearer on the way (the distance has a local minimum).
+  // with it, as long as that is nearer. Returns the point where it ends, a local minimum of the distance: the nearest
+  // point of the surface if `from` is near it.
   SurfacePoint Nearest(const ConstPoints& x, const Eigen::Vector3d& point, int from) const;
 
  private:

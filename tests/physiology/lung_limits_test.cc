@@ -59,6 +59,20 @@ TEST(LungLimits, UprightTheDomesDoNotPassThroughTheLungs) {
   EXPECT_LT(SearchedBreath(*CoarseThorax(), "upright").flaws[physiology::kPiercingLungs], kFew);
 }
 
+TEST(LungLimits, AWallNeedsAnObstacle) {
+  v1::Scene scene = ReadShipped("thorax");
+  for (v1::Motion& motion : *scene.mutable_motions()) {
+    if (motion.has_skin()) motion.mutable_skin()->clear_obstacle();
+  }
+  const auto model = Compile(scene, [](const v1::Body& body) {
+    v1::Generated shape = body.generated();
+    shape.set_resolution_mm(10);
+    return anatomy::Generate(body.anatomy(), shape);
+  });
+  EXPECT_TRUE(absl::IsInvalidArgument(model.status())) << model.status();
+  EXPECT_NE(model.status().message().find(".skin.wall: needs an obstacle"), std::string::npos) << model.status();
+}
+
 // Of a moment that goes on evenly for a while: positions are x + t v, and bones follow.
 TEST(LungLimits, VelocityIsTheDerivativeOfPosition) {
   constexpr double kTime = 1e-6;

@@ -112,7 +112,7 @@ absl::StatusOr<std::unique_ptr<Constraint>> MakeConstraint(const v1::Constraint&
   return NoKind(path);
 }
 
-// Adds skins, and then what corrects them: the last, a sheet that nothing passes through, has the last word.
+// Adds skins and their corrections, the wall before the obstacle: later corrections act on the results of earlier ones.
 absl::Status AddCorrectedSkins(const v1::Skin& scene, const std::string& name, std::string_view path,
                                ModelBuilder& builder) {
   if (absl::Status status = AddSkins(scene, name, path, builder); !status.ok()) return status;

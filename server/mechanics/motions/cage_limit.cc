@@ -31,7 +31,7 @@ CageLimit::CageLimit(std::shared_ptr<const CageWall> wall, int obstacle, const M
   WallTable table;
   wall_->wall.Evaluate(wall_->Position(at), wall_->Moving(at), table);
   const NearestSearch& search = builder.Search(obstacle);
-  for (int i = 0; i < static_cast<int>(rest.cols()); ++i) {
+  for (int i = 0; i < static_cast<int>(rest.cols()) && !builder.stop.Stopped(); ++i) {
     const Neighbour nearest = search.Nearest(rest.col(i), kNotHeld);
     if (nearest.vertex < 0) continue;
     const double hold =

@@ -52,7 +52,8 @@ SheetObstacle::SheetObstacle(std::shared_ptr<const Obstacle> obstacle, const Mod
   TriangleTree::Boxes boxes;
   obstacle_->tree.Fit(sheet, boxes);
   std::vector<Vertex> found(static_cast<size_t>(rest.cols()));
-  ForEachPart(CountParts(rest.cols()), [&](std::int64_t part) {
+  const auto stopped = [&builder] { return builder.stop.Stopped(); };
+  ForEachPartUntil(CountParts(rest.cols()), stopped, [&](std::int64_t part) {
     const PartRange range = PartOf(rest.cols(), part);
     for (std::int64_t i = range.first; i < range.end; ++i) {
       const SurfacePoint nearest = obstacle_->tree.Nearest(sheet, boxes, rest.col(i), kObstacleReach);

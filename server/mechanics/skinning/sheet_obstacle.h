@@ -34,8 +34,8 @@ struct Obstacle {
 
 class SheetObstacle final : public SkinCorrection {
  public:
-  // Finds the vertices of a body, at `rest` (3 x n) [m], that rest in front of the obstacle. The
-  // builder's model is at rest.
+  // Finds the vertices of a body, at `rest` (3 x n) [m], that rest in front of the obstacle. The builder's
+  // model is at rest. With an incomplete list if the builder has stopped.
   SheetObstacle(std::shared_ptr<const Obstacle> obstacle, const ModelBuilder& builder, const Points& rest);
 
   void Place(const EvalContext& at, MutablePoints x) const override;
