@@ -332,7 +332,7 @@ ctests() {
   tr '\r' '\n' <"$log" | grep -vE '^ *[0-9]+/[0-9]+ Test|^\[ *[0-9]' || true
   read -r bad all < <(sed -nE 's/.* ([0-9]+) tests? failed out of ([0-9]+)$/\1 \2/p' "$log") || true
   remember < <(sed -nE '/\(Skipped\)$/!s/^\t *[0-9]+ - (.*) \((.*)\).*$/\1: \2/p' "$log")
-  remember < <(sed -nE 's/^(FAIL|ERROR): (test\w+) \((.*)\)$/python: \3/p' "$log")
+  remember < <(sed -nE 's/^(FAIL|ERROR): (test\w+) \((.*)\)$/python: \3/p; s/^FAIL: (\w+: .*)$/\1/p' "$log")
   if [[ -z ${all:-} ]]; then
     count 0 1
   else

@@ -38,6 +38,10 @@ void PrintRow(const Attack& attack, const Outcome& outcome, const Damage& damage
               broken.empty() ? "held" : absl::StrJoin(broken, "; ").c_str());
   std::fflush(stdout);
   if (!outcome.note.empty()) std::fprintf(stderr, "%s: %s\n", attack.name, outcome.note.c_str());
+  for (const std::string& promise : broken) {
+    std::fprintf(stderr, "FAIL: %s: %s (gap %.0f ms, wait %.0f ms, memory %.0f; %.0f; %.0f MB)\n", attack.name,
+                 promise.c_str(), 1e3 * damage.gap, 1e3 * damage.wait, damage.before, damage.peak, damage.afterwards);
+  }
 }
 
 }  // namespace

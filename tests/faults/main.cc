@@ -29,6 +29,9 @@ void PrintLine(const Fault& fault, const Tally& tally) {
   }
   std::fflush(stdout);
   if (!tally.note.empty()) std::fprintf(stderr, "%s: %s\n", fault.name, tally.note.c_str());
+  if (tally.lost + tally.wrong > 0) {
+    std::fprintf(stderr, "FAIL: %s: %d sessions lost, %d wrong answers\n", fault.name, tally.lost, tally.wrong);
+  }
 }
 
 class Chosen {
