@@ -57,9 +57,9 @@ Mesh Vessel(const std::vector<Station>& stations, double edge_length) {
   return Tube({.through = path, .section = section}, edge_length);
 }
 
-// The aorta rises from the heart between pulmonary trunk and superior vena cava, turns back over the left bronchus, and
-// descends left of the midline, then behind the gullet and the diaphragm. Between the sheet and the discs, 2 to 4 mm
-// apart there, it is flat; from the median arcuate ligament on it lies between the crura, then in front of the spine.
+// The aorta rises from the heart between pulmonary trunk and superior vena cava, turns back over the left bronchus,
+// descends left of the midline, then behind the gullet and the sheet. Flat where the sheet is close to the discs, it
+// stays behind the sheet for 15 mm below the median arcuate ligament, which descends in a deep breath.
 std::vector<Station> AortaStations() {
   return {{{-8, -38, 256}, 10},
           {{-12, -42, 271}, 9.5},
@@ -89,16 +89,17 @@ std::vector<Station> AortaStations() {
           {{-2, 21.5, 157}, 6.5, 0.55},
           {{-2, 20.7, 151}, 6.8, 0.9},
           {{-1.6, 19.6, 146}, 7, 1},
-          {{-1, 17.5, 140}, 7, 0.75},
-          {{0, 15.2, 133}, 7.5, 0.45},
-          {{0, 13.3, 126}, 7, 0.5},
-          {{0, 12.3, 121}, 5.8, 0.8},
-          {{0, 11.7, 117}, 4.4, 1.3},
-          {{0, 9.6, 112}, 3.7, 2.2},
-          {{0, 6.6, 107.5}, 4.4, 3.6},
-          {{0, 1.5, 100.5}, 5.4, 4.8},
-          {{0, -0.8, 91}, 5.9, 5.9},
-          BeforeSpine(0, 80, 6.2, 1.5),
+          {{-1, 17.6, 140}, 7, 0.7},
+          {{0, 15.25, 133}, 7.5, 0.33},
+          {{0, 13.9, 126}, 7, 0.55},
+          {{0, 13.2, 121}, 5.5, 0.8},
+          {{0, 12.4, 116}, 4, 0.9},
+          {{0, 10.8, 111}, 3.2, 0.9},
+          {{0, 8.6, 106}, 3.2, 1},
+          {{0, 4.6, 100.5}, 3.8, 1.9},
+          {{0, 1.6, 95}, 4.8, 4.2},
+          {{0, -1, 88}, 5.6, 5.6},
+          BeforeSpine(0, 78, 6.2, 1.5),
           BeforeSpine(0, 60, 6.6, 1.8),
           BeforeSpine(0, 34, 7, 2),
           BeforeSpine(0, 5, 7.3, 1.8)};
