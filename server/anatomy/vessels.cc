@@ -1,5 +1,6 @@
 #include "server/anatomy/vessels.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -36,14 +37,22 @@ Eigen::Vector3d PassageOf(const PlaneLoop& opening) {
   return DiaphragmPoint(sum / static_cast<double>(opening.size()));
 }
 
-// Returns the section at the relative arc length s, its semi-axes linear between the stations.
+// Returns the direction of the path at a station.
+Eigen::Vector3d DirectionAt(const std::vector<Station>& stations, size_t i) {
+  return (stations[std::min(i + 1, stations.size() - 1)].at - stations[i > 0 ? i - 1 : 0].at).normalized();
+}
+
+// Returns the section at the relative arc length s, its semi-axes linear between the stations. The broad axis is
+// lateral, so that a ring has vertices at the edges of a flat vessel.
 TubeSection SectionOf(const std::vector<Station>& stations, const std::vector<double>& passed, double s) {
   const double at = s * passed.back();
   size_t next = 1;
   while (next + 1 < passed.size() && passed[next] < at) ++next;
   const double t = std::clamp((at - passed[next - 1]) / (passed[next] - passed[next - 1]), 0.0, 1.0);
   const Station &from = stations[next - 1], &to = stations[next];
-  return {std::lerp(from.depth, to.depth, t), std::lerp(from.lateral, to.lateral, t), Eigen::Vector3d::UnitX()};
+  const Eigen::Vector3d direction = (1 - t) * DirectionAt(stations, next - 1) + t * DirectionAt(stations, next);
+  return {std::lerp(from.lateral, to.lateral, t), std::lerp(from.depth, to.depth, t),
+          direction.cross(Eigen::Vector3d::UnitX())};
 }
 
 Mesh Vessel(const std::vector<Station>& stations, double edge_length) {
@@ -93,9 +102,9 @@ std::vector<Station> AortaStations() {
           {{0, 15.25, 133}, 7.5, 0.33},
           {{0, 13.9, 126}, 7, 0.55},
           {{0, 13.2, 121}, 5.5, 0.8},
-          {{0, 12.4, 116}, 4, 0.9},
-          {{0, 10.8, 111}, 3.2, 0.9},
-          {{0, 8.6, 106}, 3.2, 1},
+          {{0, 12.4, 116}, 4.2, 1},
+          {{0, 10.8, 111}, 3.7, 1},
+          {{0, 8.6, 106}, 3.8, 1.1},
           {{0, 4.6, 100.5}, 3.8, 1.9},
           {{0, 1.6, 95}, 4.8, 4.2},
           {{0, -1, 88}, 5.6, 5.6},
