@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "server/mesh/nearest.h"
+#include "server/mesh/self_crossings.h"
 #include "server/mesh/topology.h"
 #include "server/mesh/units.h"
 #include "tests/anatomy/parts.h"
@@ -74,6 +75,53 @@ TEST(Organs, CavalVeinAndGulletPassThroughTheOpeningsWithoutTouching) {
     EXPECT_GT(High(tube).z(), 0.235) << "starts above the domes";
     EXPECT_LT(Low(tube).z(), 0.165) << "ends below them";
   }
+}
+
+// Returns the number of edges of either surface that pierce the other.
+int Crossings(const v1::Anatomy& part, const v1::Anatomy& other) {
+  const Mesh &a = MeshOf(part), &b = MeshOf(other);
+  Mesh both = a;
+  both.vertices.conservativeResize(3, a.vertices.cols() + b.vertices.cols());
+  both.vertices.rightCols(b.vertices.cols()) = b.vertices;
+  both.triangles.conservativeResize(3, a.triangles.cols() + b.triangles.cols());
+  both.triangles.rightCols(b.triangles.cols()) = b.triangles.array() + static_cast<int>(a.vertices.cols());
+  constexpr double kCell = 5 * kMillimetre;
+  return SelfCrossings(both, kCell) - SelfCrossings(a, kCell) - SelfCrossings(b, kCell);
+}
+
+TEST(Organs, TheAortaTouchesNothingButTheHeartFromWhichItRises) {
+  const v1::Anatomy aorta = Part(v1::STRUCTURE_AORTA);
+  std::vector<v1::Anatomy> others = Bones();
+  others.push_back(Part(v1::STRUCTURE_DIAPHRAGM));
+  for (const auto& more : {AbdominalOrgans(), Kidneys()}) others.insert(others.end(), more.begin(), more.end());
+  for (const v1::Anatomy& organ : Mediastinum()) {
+    if (organ.structure() != v1::STRUCTURE_AORTA && organ.structure() != v1::STRUCTURE_HEART) others.push_back(organ);
+  }
+  for (const v1::Anatomy& other : others) EXPECT_EQ(Crossings(aorta, other), 0) << other.ShortDebugString();
+  EXPECT_GT(Crossings(aorta, Part(v1::STRUCTURE_HEART)), 0);
+}
+
+TEST(Organs, TheAortaDescendsLeftOfTheMidlineAndPassesBehindTheSheet) {
+  const double arcuate = 0.120;  // z of the median arcuate ligament's lower border, at T12/L1 [m]
+  EXPECT_GT(arcuate, Low(MeshOf(Part(v1::STRUCTURE_VERTEBRA, 13))).z());
+  EXPECT_LT(arcuate, High(MeshOf(Part(v1::STRUCTURE_VERTEBRA, 12))).z());
+  int thoracic = 0, behind = 0, in_front = 0;
+  for (const auto& x : MeshOf(Part(v1::STRUCTURE_AORTA)).vertices.colwise()) {
+    if (x.y() > 0 && x.z() > 0.23 && x.z() < 0.29) {
+      EXPECT_GT(x.x(), 0);
+      ++thoracic;
+    }
+    const auto [distance, above] = Sheet().Of(x);
+    if (distance > 15 * kMillimetre || x.z() > 0.185) continue;
+    if (x.z() > arcuate) {
+      EXPECT_GT(above, 0) << "in front of the sheet: " << x.transpose();
+      ++behind;
+    }
+    if (x.z() < 0.1 && above < 0) ++in_front;
+  }
+  EXPECT_GT(thoracic, 20);
+  EXPECT_GT(behind, 50);
+  EXPECT_GT(in_front, 20) << "comes forward between the crura";
 }
 
 TEST(Organs, GulletEndsInTheStomach) {

@@ -31,8 +31,8 @@ Mesh Carried(const Mesh& adult, const PhysiqueMap& map) {
   return person;
 }
 
-// Groups of parts none of which crosses another in the adult. In the adult the lungs cross the heart and ribs 8 and 9,
-// rib heads their vertebrae, and the aorta, the sheet.
+// Groups of parts none of which crosses another in the adult. In the adult the lungs cross the heart, the great vessels
+// and ribs 8 and 9, rib heads their vertebrae, and the aorta the heart.
 std::vector<std::vector<v1::Anatomy>> ApartGroups() {
   const v1::Anatomy sheet = Part(v1::STRUCTURE_DIAPHRAGM);
   std::vector<v1::Anatomy> around = {sheet, Part(v1::STRUCTURE_HEART)}, below = {sheet}, behind = {sheet};
@@ -43,6 +43,7 @@ std::vector<std::vector<v1::Anatomy>> ApartGroups() {
   for (const auto& more : {AbdominalOrgans(), Kidneys()}) below.insert(below.end(), more.begin(), more.end());
   for (const v1::Anatomy& bone : ShoulderGirdle()) around.push_back(bone);
   for (int number = 1; number <= kVertebrae; ++number) behind.push_back(Part(v1::STRUCTURE_VERTEBRA, number));
+  behind.push_back(Part(v1::STRUCTURE_AORTA));
   return {around, below, behind};
 }
 

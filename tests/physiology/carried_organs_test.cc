@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "server/mechanics/skinning/body_points.h"
 #include "server/mechanics/step/step.h"
 #include "server/mesh/nearest.h"
+#include "server/mesh/self_crossings.h"
 #include "server/mesh/topology.h"
 #include "tests/physiology/generated_thorax.h"
 
@@ -76,6 +78,52 @@ TEST_P(CarriedOrgans, DoNotPierceTheSheetAndKeepTheirSize) {
     EXPECT_NEAR(SignedVolume(PlacedByName(*model, state, body.name), body.mesh.triangles), rest, 0.15 * rest);
   }
 }
+
+// Returns the number of edges of either body that pierce the other.
+int CrossingsOf(const Model& model, const State& state, const std::string& name, const std::string& other) {
+  constexpr double kCell = 0.005;  // [m]
+  Points x(3, 0);
+  Triangles triangles(3, 0);
+  int apart = 0;
+  for (const std::string& body : {name, other}) {
+    const Points placed = PlacedByName(model, state, body);
+    const auto found = std::ranges::find(model.bodies, body, &BodyModel::name);
+    if (found == model.bodies.end()) return -1;
+    const Triangles& surface = found->mesh.triangles;
+    apart += SelfCrossings(placed, surface, kCell);
+    const Eigen::Index before = x.cols();
+    x.conservativeResize(3, before + placed.cols());
+    x.rightCols(placed.cols()) = placed;
+    triangles.conservativeResize(3, triangles.cols() + surface.cols());
+    triangles.rightCols(surface.cols()) = surface.array() + static_cast<int>(before);
+  }
+  return SelfCrossings(x, triangles, kCell) - apart;
+}
+
+class CarriedAorta : public testing::TestWithParam<const char*> {};
+
+TEST_P(CarriedAorta, TouchesNeitherTheSheetNorTheGulletNorTheSpine) {
+  const auto& model = CarriedThorax();
+  v1::Parameters parameters = model->parameters;
+  parameters.MergeFrom(*FindPreset(model->scene, GetParam()));
+  State state = model->InitialState();
+  Workspace work = model->MakeWorkspace();
+  for (int moment = 0; moment <= 8; ++moment) {
+    while (state.time < parameters.breath_length() * moment / 8) {
+      ASSERT_TRUE(Step(*model, parameters, 1e-3, state, work).ok());
+    }
+    std::vector<std::string> others = {"diaphragm", "oesophagus", "trachea", "superior-vena-cava",
+                                       "inferior-vena-cava"};
+    for (int i = 1; i <= 12; ++i) others.push_back("t" + std::to_string(i));
+    for (const char* lumbar : {"l1", "l2", "l3"}) others.emplace_back(lumbar);
+    for (const std::string& other : others) {
+      EXPECT_EQ(CrossingsOf(*model, state, "aorta", other), 0) << other << " at " << state.time;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Breaths, CarriedAorta, testing::Values("quiet", "deep"),
+                         [](const auto& breath) { return std::string(breath.param); });
 
 // Returns the model at the end of an inspiration, computed once for each preset.
 const State& AtEndOfInspiration(const Model& model, const std::string& preset) {
