@@ -1,5 +1,5 @@
 import { describe, expect, test } from "vitest";
-import { isSoftwareRenderer, QualityChooser } from "../../../web/src/viewer/quality";
+import { isSoftwareRenderer, Pace, QualityChooser } from "../../../web/src/viewer/quality";
 
 /** Records drawn frames every `interval` ms for `time` ms. */
 function run(chooser: QualityChooser, interval: number, time: number): void {
@@ -45,4 +45,20 @@ describe("the quality", () => {
     run(chooser, 500, 60_000);
     expect(chooser.quality).toBe("full");
   });
+});
+
+describe("the pace", () => {
+  /** Drawings in ten seconds of animation frames every `interval` ms, of which each may be drawn. */
+  const drawings = (pace: Pace, interval: number) => {
+    let count = 0;
+    for (let now = 0; now < 10_000; now += interval) if (pace.starts(now)) count++;
+    return count;
+  };
+
+  test("IsFifteenPicturesASecondWhereTheProcessorDraws", () => {
+    expect(drawings(new Pace(true), 1000 / 60)).toBeCloseTo(150, -1);
+    expect(drawings(new Pace(true), 100)).toBe(100);
+  });
+
+  test("IsThatOfTheScreenWithAGraphicsCard", () => expect(drawings(new Pace(false), 10)).toBe(1000));
 });

@@ -45,6 +45,26 @@ export class QualityChooser {
   }
 }
 
+/**
+ * Least time between two drawings where the processor draws in place of a graphics card [ms]. Fifteen pictures a second
+ * leave it time for the rest of the page, and for a server on the same machine.
+ */
+const softwareInterval = 60;
+
+/** Spaces drawings where the processor draws. */
+export class Pace {
+  private lastDrawn = -Infinity;
+
+  constructor(private readonly software: boolean) {}
+
+  /** True if a drawing may start at `now` [ms]; requires that one is due, and records it. */
+  starts(now: number): boolean {
+    if (this.software && now - this.lastDrawn < softwareInterval) return false;
+    this.lastDrawn = now;
+    return true;
+  }
+}
+
 /** True if the processor draws in place of a graphics card. */
 export function drawsInSoftware(): boolean {
   const gl = document.createElement("canvas").getContext("webgl2");

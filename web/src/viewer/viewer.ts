@@ -19,7 +19,7 @@ import { type OverlayKind, overlayKinds } from "./overlays";
 import { type Pull, Pulling } from "./pulling";
 import { pointerOf } from "./picking";
 import { onPointerRest } from "./pointer_rest";
-import { drawsInSoftware, type Quality, QualityChooser } from "./quality";
+import { drawsInSoftware, Pace, type Quality, QualityChooser } from "./quality";
 import { surfaceVertex } from "./surface_picking";
 
 /** Scenes with at most this many vertices are drawn as diagrams. */
@@ -68,6 +68,7 @@ export class Viewer {
   private readonly cutWalls = new CutWalls();
   private readonly lights: StudioLights;
   private readonly quality: QualityChooser;
+  private readonly pace = new Pace(this.software);
   /** True if the bodies have no ambient occlusion yet. */
   private unshaded = false;
   /** True if a shown body does not have the triangles of plain quality yet. */
@@ -427,12 +428,13 @@ export class Viewer {
     if (this.filming) return;
     this.rig.update(now);
     if (this.host.advance()) this.dirty = true;
-    if (this.resolution.recordFrame(now, this.dirty)) {
+    let draws = this.dirty && this.pace.starts(now);
+    if (this.resolution.recordFrame(now, draws)) {
       this.renderer.setPixelRatio(this.resolution.ratio);
-      this.dirty = true;
+      draws = true; // a canvas of another size is empty
     }
-    if (this.quality.recordFrame(now, this.dirty)) this.applyQuality();
-    if (this.dirty) this.draw();
+    if (this.quality.recordFrame(now, draws)) this.applyQuality();
+    if (draws) this.draw();
   }
 
   private draw(): void {
