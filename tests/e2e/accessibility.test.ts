@@ -83,7 +83,7 @@ test("TheNameOfTheSessionIsReadableAtEachWidth", async () => {
   for (const lang of ["es", "en"]) {
     await page.goto(`${server.url}?session=thorax&view=expert&lang=${lang}`);
     await viewer.waitForPicture();
-    for (const width of [761, 1000, 1100, 1101, 1200, 1241, 1280, 1401, 1440, 1601]) {
+    for (const width of [761, 1000, 1100, 1101, 1200, 1260, 1261, 1280, 1440, 1481, 1601]) {
       await page.setViewportSize({ width, height: 620 });
       const [shown, whole] = await page.evaluate(() => {
         const name = document.querySelector("#session b")!;
