@@ -313,6 +313,9 @@ TEST(LabelSet, AFolderAndFilesWithTheirOwnMapsAreRead) {
   EXPECT_THAT(std::string(ReadLabelInput({ribs}, {"", {{"x.nii", "cads-555"}}}).status().message()),
               HasSubstr("x.nii=cads-555: no label file"));
   EXPECT_TRUE(absl::IsNotFound(ReadLabelInput({(folder / "model").string(), "/nowhere.nii"}, {}).status()));
+  const std::string packed = write("more.tar", Tar({{"liver.nii.gz", Nifti(Alone("liver"))}}));
+  EXPECT_THAT(std::string(ReadLabelInput({ribs, packed}, {}).status().message()),
+              HasSubstr("more.tar: an archive among other files is not read; unpack it, or give it alone"));
   std::filesystem::remove_all(folder);
 }
 

@@ -84,6 +84,10 @@ class SetReader {
       labels_.LeaveOut(path, start.problem);
       return absl::OkStatus();
     }
+    if (IsArchive(*bytes)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(path, ": an archive among other files is not read; unpack it, or give it alone"));
+    }
     absl::StatusOr<LabelVolume> volume = ParseLabels(path, *bytes);
     if (!volume.ok()) return volume.status();
     return labels_.Add(path, *std::move(volume), ChoiceOf(path));
