@@ -1,8 +1,10 @@
 #include "client/cli/argument_kinds.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
@@ -135,7 +137,32 @@ void ApplyTo(const CLI::App& command, CLI::Option& option) {
   option.check(check, "");
 }
 
+// Returns the part of an argument that only one argument of its option may have, such as NAME of NAME=VALUE; empty if
+// the option has no such part.
+std::string OnlyOnce(const ArgumentKind& kind, const std::string& text) {
+  if (kind.placeholder == "BODY:VERTEX:X,Y,Z") return text.substr(0, text.rfind(':'));
+  const bool named = kind.kind == Kind::kSetting || absl::StrContains(kind.placeholder, '=');
+  if (named) return text.find('=') == std::string::npos ? "" : text.substr(0, text.find('='));
+  const bool ranged = absl::StartsWith(kind.placeholder, "NAME:") || absl::StartsWith(kind.placeholder, "NAME[:");
+  return ranged ? text.substr(0, text.find(':')) : "";
+}
+
 }  // namespace
+
+void CheckNamesOnce(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    const ArgumentKind kind = KindOf(command, *option);
+    std::map<std::string, std::string> seen;  // by name
+    for (const std::string& text : option->results()) {
+      const std::string name = OnlyOnce(kind, text);
+      const auto [first, added] = seen.emplace(name, text);
+      if (added || name.empty()) continue;
+      throw CLI::ValidationError(NameOf(*option), absl::StrCat(name, " is given twice, as ", first->second, " and as ",
+                                                               text, "; give it once"));
+    }
+  }
+  for (const CLI::App* below : command.get_subcommands()) CheckNamesOnce(*below);
+}
 
 CLI::Validator NumberIn(double low, double high) {
   v1::Quantity quantity;

@@ -26,6 +26,10 @@ ArgumentKind KindOf(const CLI::App& command, const CLI::Option& option);
 // is an error that names the nearest one.
 void ApplyKinds(CLI::App& command);
 
+// Throws CLI::ValidationError if an option of the commands that were typed gives one name two values, as in
+// "--set breath_force=1 --set breath_force=2". Requires: `command` was parsed.
+void CheckNamesOnce(const CLI::App& command);
+
 // Returns a check for numbers in [low, high].
 CLI::Validator NumberIn(double low, double high);
 // Returns a check for texts that `parse` accepts; its message becomes an error of usage.

@@ -88,6 +88,7 @@ class CommandLine {
     std::ranges::reverse(words);  // CLI11 takes the last word first
     try {
       app_.parse(words);
+      CheckNamesOnce(app_);
     } catch (const CLI::Success& success) {
       chosen_ = nullptr;
       return app_.exit(success);

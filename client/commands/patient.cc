@@ -168,7 +168,7 @@ int MakeFromSurfaces(const PatientOptions& options) {
   const auto made = imaging::MakeSurfaceScene(session::MakeMeshSource(data), *surfaces, *scene_template, options.name);
   if (!made.ok()) return Fail(made.status());
   if (absl::Status status = WriteScene(options.out, made->scene); !status.ok()) return Fail(status);
-  for (const std::string& fallback : made->fallbacks) std::cout << "fall-back: " << fallback << "\n";
+  for (const imaging::Fallback& fallback : made->fallbacks) std::cout << "fall-back: " << fallback.text << "\n";
   return options.serve ? ServePatient(options) : PrintNext(options, data);
 }
 

@@ -57,7 +57,7 @@ Landmarks Find(const LabelVolume& volume, const std::vector<Part>& parts) {
 }
 
 // Sets the heights of L1 to L3. A missing one is extrapolated at the spacing of its neighbours.
-void SetLumbarHeights(const Landmarks& marks, CageFrame& frame, Messages& fallbacks) {
+void SetLumbarHeights(const Landmarks& marks, CageFrame& frame, Fallbacks& fallbacks) {
   const auto& [last, last_bounds] = *marks.vertebrae.rbegin();
   const auto& [first, first_bounds] = *marks.vertebrae.begin();
   constexpr double kUsual = 33;  // typical distance between the centres of lumbar vertebrae [mm]
@@ -71,8 +71,11 @@ void SetLumbarHeights(const Landmarks& marks, CageFrame& frame, Messages& fallba
                               : first_bounds.mean.z() + (first - kL1 - l) * frame.vertebra_height;
     frame.lumbar[l] = found != marks.vertebrae.end() ? found->second.mean.z() : from;
     if (found == marks.vertebrae.end()) {
-      fallbacks.push_back(absl::StrFormat("no L%d: assumed %.0f mm from the next vertebra to place the crura", l + 1,
-                                          frame.vertebra_height));
+      fallbacks.push_back({absl::StrFormat("no L%d: assumed %.0f mm from the next vertebra to place the crura", l + 1,
+                                           frame.vertebra_height),
+                           v1::ASSUMPTION_KIND_LUMBAR,
+                           {},
+                           {l + 1.0, frame.vertebra_height}});
     }
   }
 }
@@ -158,7 +161,7 @@ Eigen::Vector2d CageFrame::Axis(double z) const {
 }
 
 absl::StatusOr<CageFrame> FindCageFrame(const LabelVolume& volume, const std::vector<Part>& parts,
-                                        Messages& fallbacks) {
+                                        Fallbacks& fallbacks) {
   const Landmarks marks = Find(volume, parts);
   if (marks.vertebrae.empty() || (marks.lower_ribs.isEmpty() && marks.lungs.isEmpty())) {
     return absl::FailedPreconditionError(
@@ -166,8 +169,10 @@ absl::StatusOr<CageFrame> FindCageFrame(const LabelVolume& volume, const std::ve
   }
   CageFrame frame;
   const Eigen::AlignedBox3d& cage = marks.lower_ribs.isEmpty() ? marks.lungs : marks.lower_ribs;
-  if (marks.lower_ribs.isEmpty())
-    fallbacks.push_back("no ribs 6-12: the width of the lungs is used as the width of the cage");
+  if (marks.lower_ribs.isEmpty()) {
+    fallbacks.push_back(
+        {"no ribs 6-12: the width of the lungs is used as the width of the cage", v1::ASSUMPTION_KIND_CAGE_WIDTH});
+  }
   frame.width = cage.sizes().x();
   double middle = 0;
   for (const auto& [number, bounds] : marks.vertebrae) {
@@ -175,7 +180,10 @@ absl::StatusOr<CageFrame> FindCageFrame(const LabelVolume& volume, const std::ve
   }
   SetLumbarHeights(marks, frame, fallbacks);
   frame.sternum_end = marks.sternum.isEmpty() ? frame.lumbar[0] + 3.3 * frame.vertebra_height : marks.sternum.min().z();
-  if (marks.sternum.isEmpty()) fallbacks.push_back("no sternum: the front of the rim is estimated from the spine");
+  if (marks.sternum.isEmpty()) {
+    fallbacks.push_back(
+        {"no sternum: the front of the rim is estimated from the spine", v1::ASSUMPTION_KIND_NO_STERNUM});
+  }
   frame.spine_front = SpineFront(marks);
   const double front = marks.sternum.isEmpty() ? cage.min().y() : marks.sternum.min().y() + 8;
   // Anterior, so that rays reach the gutters beside the spine; low, so that they reach both domes.

@@ -46,7 +46,8 @@ struct CageFrame {
 // Fits the frame to the segmented parts. Replaces a missing landmark by a typical value and adds a message to
 // `fallbacks`. FAILED_PRECONDITION if there are neither ribs 6-12 nor lungs, or no vertebra, or if their
 // proportions are not those of a person, or left and right, or front and back are exchanged.
-absl::StatusOr<CageFrame> FindCageFrame(const LabelVolume& volume, const std::vector<Part>& parts, Messages& fallbacks);
+absl::StatusOr<CageFrame> FindCageFrame(const LabelVolume& volume, const std::vector<Part>& parts,
+                                        Fallbacks& fallbacks);
 
 }  // namespace phrenic::imaging
 

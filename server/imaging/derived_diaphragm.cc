@@ -249,7 +249,7 @@ absl::StatusOr<Mesh> MeshLayers(anatomy::SheetDomain& domain, double area, const
 
 absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, const std::vector<Part>& parts,
                                                  const CageFrame& frame, const FittedCage& cage,
-                                                 const DiaphragmOptions& options, Messages& fallbacks) {
+                                                 const DiaphragmOptions& options, Fallbacks& fallbacks) {
   const SheetEvidence evidence = CollectEvidence(volume, parts, frame, cage);
   if (absl::Status status = CheckEvidence(evidence); !status.ok()) return status;
   const SmoothSheet smooth(frame, evidence);

@@ -32,7 +32,7 @@ struct DerivedDiaphragm {
 // was observed, or if the rim does not enclose a sheet that can be meshed.
 absl::StatusOr<DerivedDiaphragm> DeriveDiaphragm(const LabelVolume& volume, const std::vector<Part>& parts,
                                                  const CageFrame& frame, const FittedCage& cage,
-                                                 const DiaphragmOptions& options, Messages& fallbacks);
+                                                 const DiaphragmOptions& options, Fallbacks& fallbacks);
 
 }  // namespace phrenic::imaging
 

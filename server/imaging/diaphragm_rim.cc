@@ -109,7 +109,7 @@ std::vector<Knot> CrusKnots(const CageFrame& frame, const CrusEnds& ends) {
 
 // Returns the knots of the whole rim from the front, counter-clockwise seen from above: left side first.
 std::vector<Knot> Knots(const std::vector<double>& lowest, const CrusEnds& left_crus, const CrusEnds& right_crus,
-                        const CageFrame& frame, Messages& fallbacks) {
+                        const CageFrame& frame, Fallbacks& fallbacks) {
   int bridged = 0;
   std::vector<Knot> knots = CostalKnots(lowest, frame, 1, &bridged);
   for (const Knot& knot : CrusKnots(frame, left_crus)) knots.push_back({180 - knot.degrees, knot.z});
@@ -119,7 +119,10 @@ std::vector<Knot> Knots(const std::vector<double>& lowest, const CrusEnds& left_
   for (auto knot = right.rbegin(); knot != right.rend(); ++knot) knots.push_back({knot->degrees + 360, knot->z});
   if (bridged > 0) {
     fallbacks.push_back(
-        absl::StrFormat("costal margin: no rib or cartilage 7-12 in %d of 28 directions; interpolated", bridged));
+        {absl::StrFormat("costal margin: no rib or cartilage 7-12 in %d of 28 directions; interpolated", bridged),
+         v1::ASSUMPTION_KIND_MARGIN,
+         {},
+         {static_cast<double>(bridged)}});
   }
   return knots;
 }
@@ -143,7 +146,7 @@ Knot Spline(const std::vector<Knot>& knots, std::size_t span, double t) {
 }  // namespace
 
 anatomy::PlaneLoop FindRim(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,
-                           const SmoothSheet& sheet, Messages& fallbacks) {
+                           const SmoothSheet& sheet, Fallbacks& fallbacks) {
   constexpr int kSamplesASpan = 12;
   const CrusEnds left = FindCrusEnds(volume, parts, frame, v1::SIDE_LEFT);
   const CrusEnds right = FindCrusEnds(volume, parts, frame, v1::SIDE_RIGHT);

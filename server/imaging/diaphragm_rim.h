@@ -13,7 +13,7 @@ namespace phrenic::imaging {
 // project's physiology notes). If the diaphragm itself is labelled, the rim follows its lowest points instead, and its
 // crura. Interpolates over gaps between ribs and cartilages and adds a message to `fallbacks`.
 anatomy::PlaneLoop FindRim(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,
-                           const SmoothSheet& sheet, Messages& fallbacks);
+                           const SmoothSheet& sheet, Fallbacks& fallbacks);
 
 // True if a point [mm] is in the crus of that side: beside the spine, below the arcuate ligaments.
 bool InCrus(const CageFrame& frame, const Eigen::Vector3d& point, v1::Side side);

@@ -149,23 +149,27 @@ int AddApposed(const std::vector<Met>& rays, const Eigen::VectorXd& radius, Wall
   return apposed;
 }
 
-void ReportFit(const std::vector<Met>& rays, const Eigen::VectorXd& radius, Messages& fallbacks) {
+void ReportFit(const std::vector<Met>& rays, const Eigen::VectorXd& radius, Fallbacks& fallbacks) {
   std::vector<double> distances;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (std::isfinite(rays[i].bone)) distances.push_back(rays[i].bone - radius[static_cast<Eigen::Index>(i)]);
   }
   if (distances.empty()) return;
   std::sort(distances.begin(), distances.end());
-  fallbacks.push_back(absl::StrFormat(
-      "chest wall: no bone in %.0f %% of the directions, bridged; bones are %.1f mm from it at least, %.1f in 95 %%",
-      100 - 100.0 * static_cast<double>(distances.size()) / static_cast<double>(rays.size()), distances.front(),
-      distances[distances.size() / 20]));
+  const double bridged = 100 - 100.0 * static_cast<double>(distances.size()) / static_cast<double>(rays.size());
+  const double least = distances.front(), usual = distances[distances.size() / 20];
+  fallbacks.push_back({absl::StrFormat("chest wall: no bone in %.0f %% of the directions, bridged; bones are %.1f mm "
+                                       "from it at least, %.1f in 95 %%",
+                                       bridged, least, usual),
+                       v1::ASSUMPTION_KIND_WALL,
+                       {},
+                       {bridged, least, usual}});
 }
 
 }  // namespace
 
 FittedCage::FittedCage(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame,
-                       Messages& fallbacks)
+                       Fallbacks& fallbacks)
     : frame_(frame), bottom_(frame.lumbar[2] - frame.vertebra_height / 2) {
   grid_ = {kColumns, 1 + std::max(8, static_cast<int>(std::ceil((frame.top - bottom_) / kRowHeight))), true};
   const std::vector<Met> rays = FollowRays(volume, parts, frame, grid_, bottom_);

@@ -19,7 +19,7 @@ namespace phrenic::imaging {
 class FittedCage {
  public:
   // Adds a message to `fallbacks` with the share of directions without a bone, and how near to the wall bones are.
-  FittedCage(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame, Messages& fallbacks);
+  FittedCage(const LabelVolume& volume, const std::vector<Part>& parts, const CageFrame& frame, Fallbacks& fallbacks);
 
   // Returns R at an azimuth from the front (-y) towards the left (+x) [rad]; a cubic B-spline (C2). Below and above the
   // grid it is that of its border.

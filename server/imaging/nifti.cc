@@ -116,17 +116,24 @@ absl::StatusOr<LabelVolume> ParseNifti(std::string_view name, std::string_view b
   if (!IsGzip(bytes)) return ParsePlain(name, bytes, max_voxels);
   const absl::StatusOr<std::string> start = Inflate(name, bytes, kMaxHeader);
   if (!start.ok()) return start.status();
-  const absl::StatusOr<NiftiHeader> header = ParseNiftiHeader(name, *start);
-  if (!header.ok()) return header.status();
-  if (absl::Status status = CheckVoxels(name, *header, max_voxels); !status.ok()) return status;
-  if (header->end() / kMaxDeflateRatio > bytes.size()) {
-    return absl::InvalidArgumentError(absl::StrCat(std::string(name), ": the header declares ", header->end(),
-                                                   " bytes, more than a file of ", bytes.size(), " can hold"));
+  const absl::StatusOr<std::size_t> length = NiftiLength(name, *start, max_voxels);
+  if (!length.ok()) return length.status();
+  if (*length / kMaxDeflateRatio > bytes.size()) {
+    return absl::InvalidArgumentError(absl::StrCat(std::string(name), ": the header declares ", *length,
+                                                   " bytes, more than a file of ", bytes.size(),
+                                                   " can hold; download it again"));
   }
   // Ask for one more byte, so that zlib reaches the end of the stream and verifies the checksum.
-  const absl::StatusOr<std::string> whole = Inflate(name, bytes, header->end() + 1);
+  const absl::StatusOr<std::string> whole = Inflate(name, bytes, *length + 1);
   if (!whole.ok()) return whole.status();
   return ParsePlain(name, *whole, max_voxels);
+}
+
+absl::StatusOr<std::size_t> NiftiLength(std::string_view name, std::string_view start, std::size_t max_voxels) {
+  const absl::StatusOr<NiftiHeader> header = ParseNiftiHeader(name, start);
+  if (!header.ok()) return header.status();
+  if (absl::Status status = CheckVoxels(name, *header, max_voxels); !status.ok()) return status;
+  return header->end();
 }
 
 std::string WriteNifti(const LabelVolume& volume) {

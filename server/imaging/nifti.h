@@ -22,6 +22,10 @@ namespace phrenic::imaging {
 absl::StatusOr<LabelVolume> ParseNifti(std::string_view name, std::string_view bytes,
                                        std::size_t max_voxels = kMaxVoxels);
 
+// Returns the length of an uncompressed NIfTI file as the header at its start declares it [bytes]. The errors of
+// ParseNifti for this header: one of more voxels is refused before they are read. Thread-safe.
+absl::StatusOr<std::size_t> NiftiLength(std::string_view name, std::string_view start, std::size_t max_voxels);
+
 // Returns an uncompressed NIfTI-1 file: uint16 voxels, sform, label names in an extension.
 std::string WriteNifti(const LabelVolume& volume);
 

@@ -55,6 +55,25 @@ class Fields {
   std::endian order_;
 };
 
+// Returns what the voxels of a type that is no integer are, by NIfTI's datatype code.
+std::string_view TypeWords(int code) {
+  switch (code) {
+    case 1:
+      return "single bits";
+    case 16:
+      return "float32 numbers";
+    case 64:
+      return "float64 numbers";
+    case 1536:
+      return "float128 numbers";
+    case 128:
+    case 2304:
+      return "colours";
+    default:
+      return "no integers";
+  }
+}
+
 // Determines version and endianness from the header's length and magic number.
 absl::StatusOr<Fields> Recognise(std::string_view name, std::string_view bytes) {
   for (const std::endian order : {std::endian::little, std::endian::big}) {
@@ -78,7 +97,8 @@ absl::StatusOr<Fields> Recognise(std::string_view name, std::string_view bytes) 
 absl::Status ReadSize(const Fields& fields, NiftiHeader& header) {
   const std::int64_t dimensions = fields.Count(fields.at->dim, 0);
   if (dimensions < 3 || dimensions > 7) {
-    return fields.Error(fields.at->dim, absl::StrCat("a volume has 3 dimensions, not ", dimensions));
+    return fields.Error(fields.at->dim,
+                        absl::StrCat("a volume has 3 dimensions, not ", dimensions, "; save one volume of labels"));
   }
   for (int k = 1; k <= dimensions; ++k) {
     const std::int64_t along = fields.Count(fields.at->dim, k);
@@ -86,7 +106,8 @@ absl::Status ReadSize(const Fields& fields, NiftiHeader& header) {
     if (!valid) {
       return fields.Error(fields.at->dim,
                           absl::StrCat("dimension ", k, " has ", along, " entries; ",
-                                       k <= 3 ? "1 to 32767 are supported" : "only a single volume is supported"));
+                                       k <= 3 ? "1 to 32767 are supported; crop it to the thorax"
+                                              : "only a single volume is supported; save each as a file of its own"));
     }
     if (k <= 3) header.size[k - 1] = static_cast<int>(along);
   }
@@ -99,8 +120,9 @@ absl::Status ReadSize(const Fields& fields, NiftiHeader& header) {
 absl::Status ReadType(const Fields& fields, NiftiHeader& header) {
   header.type = fields.Get<std::int16_t>(fields.at->type);
   if (!WithIntegerOf(header.type, [&](auto number) { header.voxel_bytes = sizeof(number); })) {
-    return fields.Error(fields.at->type, absl::StrCat("voxels have type code ", header.type,
-                                                      "; labels are integers: save it as such (uint8, int16, ...)"));
+    return fields.Error(fields.at->type,
+                        absl::StrCat("voxels are ", std::string(TypeWords(header.type)), " (type code ", header.type,
+                                     "), and labels are integers: save it as uint8, int16 or another integer type"));
   }
   const double slope = fields.Real(fields.at->slope, 0), intercept = fields.Real(fields.at->slope, 1);
   const bool plain = (slope == 0 && std::isfinite(intercept)) || (slope == 1 && intercept == 0);
@@ -111,7 +133,8 @@ absl::Status ReadType(const Fields& fields, NiftiHeader& header) {
   const double start = fields.at->wide ? static_cast<double>(fields.Get<std::int64_t>(fields.at->data_at))
                                        : fields.Get<float>(fields.at->data_at);
   if (!(start >= static_cast<double>(header.length) && start < 1e9) || start != std::floor(start)) {
-    return fields.Error(fields.at->data_at, absl::StrCat("voxels cannot start at byte ", start));
+    return fields.Error(fields.at->data_at,
+                        absl::StrCat("voxels cannot start at byte ", start, " (vox_offset); save the file again"));
   }
   header.data_at = static_cast<std::size_t>(start);
   return absl::OkStatus();
@@ -165,6 +188,14 @@ absl::Status ReadOrientation(const Fields& fields, NiftiHeader& header) {
 }
 
 }  // namespace
+
+bool HasNiftiMark(std::string_view start) {
+  for (const Layout* layout : {&kNifti1, &kNifti2}) {
+    const std::string_view magic = start.substr(std::min(start.size(), layout->magic), 3);
+    if (magic == "ni1" || magic == "ni2" || magic == (layout->wide ? "n+2" : "n+1")) return true;
+  }
+  return false;
+}
 
 absl::StatusOr<NiftiHeader> ParseNiftiHeader(std::string_view name, std::string_view bytes) {
   const absl::StatusOr<Fields> fields = Recognise(name, bytes);

@@ -55,6 +55,9 @@ bool WithIntegerOf(int type, const Then& then) {
   }
 }
 
+// True if the start of a file has the magic number of NIfTI-1 or NIfTI-2, whatever else the header says.
+bool HasNiftiMark(std::string_view start);
+
 // Parses the header from the start of a file. INVALID_ARGUMENT "name:byte N: ..." if it is not that of a label volume.
 absl::StatusOr<NiftiHeader> ParseNiftiHeader(std::string_view name, std::string_view bytes);
 

@@ -82,12 +82,14 @@ bool HasRibs(const std::vector<Part>& parts, v1::Side side) {
 }
 
 void AddNumberedRibs(const LabelVolume& volume, const std::vector<Mask>& ribs, std::vector<Part>& parts,
-                     Messages& fallbacks) {
+                     Fallbacks& fallbacks) {
   const double middle = Middle(volume, parts, ribs);
   for (const auto side : {v1::SIDE_RIGHT, v1::SIDE_LEFT}) {
     if (HasRibs(parts, side)) {
-      fallbacks.push_back(absl::StrCat("ribs on the ", SideWord(side),
-                                       ": a label of ribs without a number was left out, because others have numbers"));
+      fallbacks.push_back({absl::StrCat("ribs on the ", SideWord(side),
+                                        ": a label of ribs without a number was left out, because others have numbers"),
+                           v1::ASSUMPTION_KIND_RIBS_LEFT_OUT,
+                           {SideWord(side)}});
       continue;
     }
     std::vector<std::pair<double, const Mask*>> found;
@@ -106,8 +108,11 @@ void AddNumberedRibs(const LabelVolume& volume, const std::vector<Mask>& ribs, s
       part.label_voxels = part.mask.Count();
       part.name = NameOf("", part.anatomy);
     }
-    fallbacks.push_back(absl::StrFormat("ribs on the %s: one label, divided into %d and numbered from the top%s",
-                                        SideWord(side), found.size(), found.size() == 12 ? "" : "; 12 are expected"));
+    fallbacks.push_back({absl::StrFormat("ribs on the %s: one label, divided into %d and numbered from the top%s",
+                                         SideWord(side), found.size(), found.size() == 12 ? "" : "; 12 are expected"),
+                         v1::ASSUMPTION_KIND_RIBS_DIVIDED,
+                         {SideWord(side)},
+                         {static_cast<double>(found.size())}});
   }
 }
 
@@ -144,7 +149,7 @@ double LargestShare(const std::vector<Mask>& pieces) {
 
 // Adds a label as one part: the largest component after closing by one voxel, or by up to three until it is connected.
 void AddWhole(const LabelVolume& volume, const v1::LabelMeaning& label, const Extent& extent, std::vector<Part>& parts,
-              Messages& fallbacks) {
+              Fallbacks& fallbacks) {
   constexpr int kFurthest = 3;
   const int margin = SurfaceMargin(volume);
   std::vector<Mask> pieces;
@@ -158,10 +163,12 @@ void AddWhole(const LabelVolume& volume, const v1::LabelMeaning& label, const Ex
   const std::string name = NameOf(label.name(), label.anatomy());
   parts.push_back({name, label.anatomy(), label.organ(), std::move(pieces.front()), extent.voxels});
   if (reach > 1) {
-    fallbacks.push_back(
-        absl::StrFormat("%s: label %d had gaps; gaps of up to %d voxels were closed and the largest "
-                        "component was used",
-                        name, label.number(), 2 * reach));
+    fallbacks.push_back({absl::StrFormat("%s: label %d had gaps; gaps of up to %d voxels were closed and the largest "
+                                         "component was used",
+                                         name, label.number(), 2 * reach),
+                         v1::ASSUMPTION_KIND_GAPS_CLOSED,
+                         {name},
+                         {static_cast<double>(label.number()), 2.0 * reach}});
   }
 }
 
@@ -178,7 +185,7 @@ absl::Status CheckLabelName(const v1::LabelMeaning& label) {
                                                  "\" needs letters, digits, \"_\", \"-\" and spaces; correct the map"));
 }
 
-absl::StatusOr<std::vector<Part>> FindParts(const LabelVolume& volume, const v1::LabelMap& map, Messages& fallbacks) {
+absl::StatusOr<std::vector<Part>> FindParts(const LabelVolume& volume, const v1::LabelMap& map, Fallbacks& fallbacks) {
   const std::map<Label, Extent> extents = Extents(volume);
   const int margin = SurfaceMargin(volume);
   std::vector<Part> parts;

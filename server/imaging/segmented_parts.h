@@ -24,13 +24,20 @@ struct Part {
   bool Is(v1::Structure structure) const { return anatomy.structure() == structure; }
 };
 
-using Messages = std::vector<std::string>;
+// What the volume does not define, and what is done instead.
+struct Fallback {
+  std::string text;  // a sentence in English
+  v1::AssumptionKind kind = v1::ASSUMPTION_KIND_UNSPECIFIED;
+  std::vector<std::string> parts = {};  // by `kind`
+  std::vector<double> values = {};      // by `kind`
+};
+using Fallbacks = std::vector<Fallback>;
 
 // Returns a part for each label of the map in the volume: closed, without cavities, the largest component. Cartilages
 // in one label become one part per component. Ribs in one label are divided into components, assigned to a side of the
 // spine (else of the ribs' mean), and numbered from the top by the height of their heads. Adds a message to `fallbacks`
 // for everything guessed or lost. FAILED_PRECONDITION if the volume has none of the map's labels.
-absl::StatusOr<std::vector<Part>> FindParts(const LabelVolume& volume, const v1::LabelMap& map, Messages& fallbacks);
+absl::StatusOr<std::vector<Part>> FindParts(const LabelVolume& volume, const v1::LabelMap& map, Fallbacks& fallbacks);
 
 }  // namespace phrenic::imaging
 

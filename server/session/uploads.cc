@@ -10,7 +10,6 @@
 #include "server/crypto/secret.h"
 #include "server/crypto/sha256.h"
 #include "server/imaging/label_file.h"
-#include "server/imaging/labels/label_archive.h"
 #include "server/mesh/units.h"
 #include "server/meshio/formats.h"
 

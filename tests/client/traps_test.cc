@@ -56,6 +56,29 @@ TEST(Traps, ArgumentsThatCannotBeRightAreErrorsOfUsage) {
   }
 }
 
+TEST(Traps, ANameWithTwoValuesIsAnErrorOfUsage) {
+  const std::string a = SquareOfSide("twice", "200"), volume = Scratch("twice.nii.gz");
+  const std::vector<std::vector<std::string>> lines = {
+      {"phantom", "--out", volume, "--physique", "height=1.6", "--physique", "height=1.9"},
+      {"run", "cube-springs", "--seconds", "0.01", "--set", "elasticity=1", "--set", "elasticity=2"},
+      {"run", "cube-springs", "--seconds", "0.01", "--pull", "cube:0:0,0,1", "--pull", "cube:0:0,0,2"},
+      {"set", "s", "breath_force=1", "breath_force=2"},
+      {"compare", a, a, "--check", "hd95_max=1,hd95_max=2"},
+      {"fit", "thorax", "--volume", a, "--error", "volume=1", "--error", "volume=2"},
+      {"credibility", "thorax", "--use", a, "--evidence", "x=a", "--evidence", "x=b"},
+      {"calibrate", "thorax", "--vary", "breath_force", "--vary", "breath_force:1:2"},
+      {"study", "sensitivity", "thorax", "--vary", "breath_force:1:2", "--vary", "breath_force:1:3"},
+  };
+  for (const auto& line : lines) {
+    const Outcome run = Phrenic(line);
+    EXPECT_EQ(run.code, 2) << ::testing::PrintToString(line) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(" is given twice, as ")) << ::testing::PrintToString(line);
+  }
+  const Outcome two =
+      Phrenic({"run", "cube-springs", "--seconds", "0.01", "--set", "elasticity=1", "--set", "time_step=0.001"});
+  EXPECT_EQ(two.code, 0) << two.err;
+}
+
 TEST(Traps, OnlyAModelOfTheThesisIsComparedWithTheThesis) {
   const Outcome sheet = Phrenic({"run", "sheet-2d", "--seconds", "0.1"});
   ASSERT_EQ(sheet.code, 0) << sheet.err;

@@ -78,6 +78,25 @@ test.each([
   await viewer.page.setViewportSize({ width: 900, height: 620 });
 });
 
+test("TheNameOfTheSessionIsReadableAtEachWidth", async () => {
+  const { page } = viewer;
+  for (const lang of ["es", "en"]) {
+    await page.goto(`${server.url}?session=thorax&view=expert&lang=${lang}`);
+    await viewer.waitForPicture();
+    for (const width of [761, 1000, 1100, 1101, 1200, 1260, 1261, 1280, 1440, 1481, 1601]) {
+      await page.setViewportSize({ width, height: 620 });
+      const [shown, whole] = await page.evaluate(() => {
+        const name = document.querySelector("#session b")!;
+        return [name.clientWidth, name.scrollWidth];
+      });
+      expect(shown, `${lang}, ${width} px: the name is cut off`).toBe(whole);
+      expect(shown).toBeGreaterThan(100);
+      expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(width);
+    }
+  }
+  await page.setViewportSize({ width: 900, height: 620 });
+});
+
 test("TheHeaderFitsInProjectorMode", async () => {
   const { page } = viewer;
   await page.setViewportSize({ width: 1024, height: 768 });

@@ -6,7 +6,8 @@ import { pathToFileURL } from "node:url";
 import { promisify } from "node:util";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, expect, test } from "vitest";
-import { endAll, isComplaint, startAll, ViewerPage } from "./browser";
+import { filmRate, leastCaption } from "../../web/src/film/layout";
+import { endAll, isComplaint, slowDisplay, startAll, ViewerPage } from "./browser";
 import { outFolder, type Server } from "./server";
 
 let server: Server;
@@ -20,14 +21,19 @@ const breathLength = 0.8;
 beforeAll(async () => {
   [browser, server] = await startAll();
   await server.phrenic("set", "thorax", `breath_length=${breathLength}`);
+  // The server then records the breath with the whole machine; the session itself may rest.
+  await server.phrenic("pause", "thorax");
 });
 
 afterAll(() => endAll(browser, server));
 
-/** Plays a film in a page of its own: its size, duration [s], and pictures at some times as data URLs. */
+/**
+ * Plays a film of 360 lines in a page of its own: its size, duration [s], and pictures at some times, in the middle of
+ * those of the film, as data URLs.
+ */
 async function watch(page: Page, bytes: Buffer, times: number[]) {
   return page.evaluate(
-    async ([text, moments]) => {
+    async ([text, moments, rate, caption]) => {
       const video = document.createElement("video");
       video.src = `data:video/webm;base64,${text}`;
       await new Promise((done, fail) => ((video.onloadeddata = done), (video.onerror = fail)));
@@ -36,11 +42,17 @@ async function watch(page: Page, bytes: Buffer, times: number[]) {
       const pictures: string[] = [];
       let [before, moved, bright] = [undefined as Uint8ClampedArray | undefined, [] as number[], 0];
       for (const time of moments) {
+        // A video that has been sought may still show the picture before: the one of this moment must be presented.
+        const presented = new Promise<void>((done) => {
+          const look = (_: number, { mediaTime }: VideoFrameCallbackMetadata) =>
+            mediaTime <= time && time < mediaTime + 1 / rate ? done() : video.requestVideoFrameCallback(look);
+          video.requestVideoFrameCallback(look);
+        });
         video.currentTime = time;
-        await new Promise((done) => (video.onseeked = done));
+        await presented;
         pen.drawImage(video, 0, 0);
         // The caption's clock changes in any case: only the picture above it counts.
-        const { data } = pen.getImageData(0, 0, canvas.width, canvas.height - 64);
+        const { data } = pen.getImageData(0, 0, canvas.width, canvas.height - caption);
         let count = 0;
         for (let i = 0; i < data.length; i += 4) {
           if (before !== undefined && Math.abs(data[i] - before[i]) > 24) count++;
@@ -53,8 +65,21 @@ async function watch(page: Page, bytes: Buffer, times: number[]) {
       const part = bright / (moments.length * canvas.width * canvas.height);
       return { width: canvas.width, height: canvas.height, duration: video.duration, moved, bright: part, pictures };
     },
-    [bytes.toString("base64"), times] as const,
+    [bytes.toString("base64"), times, filmRate, leastCaption] as const,
   );
+}
+
+/** Stops the film, which may take only a second, once its progress has these words. */
+async function stopFilm(page: Page, words: string): Promise<void> {
+  const stopped = (awaited: string) => {
+    const progress = document.getElementById("film-progress")!;
+    if (progress.textContent?.includes(awaited) !== true) return false;
+    progress.querySelector("button")!.click();
+    return true;
+  };
+  await page.waitForFunction(stopped, words, { timeout: 60_000 });
+  await page.waitForFunction(() => !(document.getElementById("film") as HTMLButtonElement).disabled);
+  expect(await page.textContent("#film-progress")).toBe("");
 }
 
 test("AFilmOfABreathPlays", { timeout: 240_000 }, async () => {
@@ -64,12 +89,14 @@ test("AFilmOfABreathPlays", { timeout: 240_000 }, async () => {
   await page.click("#share-open");
   // Only a visible button takes the focus.
   await page.locator("#film").waitFor();
+  await page.selectOption("#film-lines", "360");
   await page.focus("#film");
   const started = Date.now();
   const saving = page.waitForEvent("download", { timeout: 200_000 });
   await page.keyboard.press("Enter");
   const shown = () => page.textContent("#film-progress");
   await expect.poll(shown, { timeout: 100_000 }).toContain("Drawing the film");
+  const recorded = (Date.now() - started) / 1000;
   expect(await page.evaluate(() => document.activeElement?.textContent)).toBe("Stop");
   expect(await viewer.violations()).toEqual([]);
   const file = await saving;
@@ -78,27 +105,26 @@ test("AFilmOfABreathPlays", { timeout: 240_000 }, async () => {
   const path = join(outFolder, "breath.webm");
   await file.saveAs(path);
   const empty = await (await browser.newContext()).newPage();
-  const film = await watch(empty, await readFile(path), [0.02, 0.2, 0.4]);
+  const film = await watch(empty, await readFile(path), [0.02, 0.22, 0.42]);
   for (const [i, each] of film.pictures.entries()) await writeFile(join(outFolder, `film-${i}.png`), each, "base64");
   console.log(
-    `film: ${film.width} x ${film.height}, ${film.duration.toFixed(2)} s, ${(statSync(path).size / 1e6).toFixed(2)} MB, made in ${seconds.toFixed(0)} s; moved ${film.moved.map((each) => each.toFixed(3)).join(" ")}`,
+    `film: ${film.width} x ${film.height}, ${film.duration.toFixed(2)} s, ${(statSync(path).size / 1e6).toFixed(2)} MB, recorded in ${recorded.toFixed(0)} s, drawn by ${seconds.toFixed(0)} s; moved ${film.moved.map((each) => each.toFixed(3)).join(" ")}`,
   );
   expect([film.width % 2, film.height % 2]).toEqual([0, 0]);
-  expect(film.width === 1280 || film.height === 720).toBe(true);
+  expect(film.width === 640 || film.height === 360).toBe(true);
   expect(Math.abs(film.duration - breathLength)).toBeLessThan(0.2);
   expect(film.bright).toBeGreaterThan(0.02);
   for (const part of film.moved) expect(part).toBeGreaterThan(0.001);
   // The view is live again, and a second film can be cancelled.
   await page.keyboard.press("Escape");
+  await server.phrenic("play", "thorax");
   await viewer.waitForTick(await viewer.tick());
   const count = await page.evaluate(() => window.phrenic!.drawCount());
   await page.waitForFunction((before) => window.phrenic!.drawCount() > before, count);
+  await server.phrenic("pause", "thorax");
   await page.click("#share-open");
   await page.click("#film");
-  await page.getByText("Drawing the film").waitFor({ timeout: 60_000 });
-  await page.getByRole("button", { name: "Stop" }).click();
-  await page.waitForFunction(() => !(document.getElementById("film") as HTMLButtonElement).disabled);
-  expect(await page.textContent("#film-progress")).toBe("");
+  await stopFilm(page, "Recording");
   expect(viewer.consoleErrors).toEqual([]);
   await Promise.all([empty.context().close(), viewer.close()]);
 });
@@ -107,6 +133,7 @@ test("APageThatWasTakenHomeMakesAFilmWithoutANetwork", { timeout: 240_000 }, asy
   const path = join(outFolder, "film-page.html");
   await server.phrenic("export", "thorax", path);
   const context = await browser.newContext({ viewport: { width: 900, height: 620 }, offline: true });
+  await slowDisplay(context);
   const page = await context.newPage();
   const complaints: string[] = [];
   page.on("console", (message) => isComplaint(message) && complaints.push(message.text()));
@@ -114,10 +141,13 @@ test("APageThatWasTakenHomeMakesAFilmWithoutANetwork", { timeout: 240_000 }, asy
   await page.goto(pathToFileURL(path).href);
   await page.waitForSelector("#loading", { state: "hidden", timeout: 30_000 });
   await page.locator("summary", { hasText: "A film of this breath" }).click();
+  await page.selectOption("#film-lines", "360");
   const [file] = await Promise.all([page.waitForEvent("download", { timeout: 100_000 }), page.click("#film")]);
-  const film = await watch(await context.newPage(), await readFile((await file.path())!), [0.02, 0.4]);
+  const film = await watch(await context.newPage(), await readFile((await file.path())!), [0.02, 0.42]);
   expect(Math.abs(film.duration - breathLength)).toBeLessThan(0.2);
   expect(film.moved[0]).toBeGreaterThan(0.001);
+  await page.click("#film");
+  await stopFilm(page, "Drawing the film");
   const [picture] = await Promise.all([page.waitForEvent("download", { timeout: 100_000 }), page.click("#animation")]);
   expect(picture.suggestedFilename()).toBe("thorax.png");
   const animation = join(outFolder, "breath.png");

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <functional>
 
+#include "absl/strings/str_cat.h"
 #include "server/imaging/gzip.h"
 #include "server/imaging/label_file.h"
 #include "server/imaging/labels/label_archive.h"
@@ -210,6 +211,78 @@ TEST(LabelSet, AnArchiveIsReadAsItsFiles) {
   }
 }
 
+// Returns an uncompressed NIfTI file with another type of voxels.
+std::string WithType(const LabelVolume& volume, int code) {
+  constexpr std::size_t kTypeAt = 70;
+  std::string bytes = WriteNifti(volume);
+  bytes[kTypeAt] = static_cast<char>(code);
+  bytes[kTypeAt + 1] = '\0';
+  return bytes;
+}
+
+TEST(LabelSet, FilesThatAreLeftOutHaveTheirReason) {
+  const std::string liver = Nifti(Alone("liver")), real = WithType(Alone("spleen"), 16);
+  std::string nameless = WriteNifti(Alone("heart"));
+  nameless.replace(344, 3, "???");
+  const std::map<std::string, std::string> bad = {
+      {"ct.nii", real},
+      {"dose", Deflate(real)},
+      {"heart.nii", nameless},
+      {"rib.nii.gz", liver.substr(0, 9)},
+      {"more.zip", std::string("PK\x03\x04", 4) + "..."},
+      {"all.tgz", Deflate(Tar({{"liver.nii.gz", liver}}))},
+      {"old.7z", "7z\xbc\xaf\x27\x1c..."},
+      {"notes.txt.gz", Deflate("seen by K.")},
+  };
+  std::map<std::string, std::string> files = bad;
+  files["liver.nii.gz"] = liver;
+  const absl::StatusOr<LabelInput> input = ParseLabelInput("labels", Tar(files), "");
+  ASSERT_TRUE(input.ok()) << input.status();
+  const std::vector<std::string> reasons = {
+      "left out: ct.nii, dose: byte 70: voxels are float32 numbers (type code 16), and labels are integers: save it as",
+      "left out: heart.nii: not a NIfTI-1 or NIfTI-2 file",
+      "left out: rib.nii.gz: the gzip data is truncated",
+      "left out: more.zip: an archive among other files is not read; unpack it",
+      "left out: all.tgz: is an archive compressed by gzip (.tar.gz, .tgz), which is not read; unpack it",
+      "left out: old.7z: is a 7-Zip archive (.7z), which is not read; unpack it",
+      "left out, because they are not label files: notes.txt.gz",
+  };
+  for (const std::string& reason : reasons) EXPECT_THAT(input->volume.remarks, Contains(HasSubstr(reason)));
+  const std::string none(ParseLabelInput("labels", Tar(bad), "").status().message());
+  EXPECT_THAT(none, HasSubstr("has no label file"));
+  EXPECT_THAT(none, HasSubstr("; left out: ct.nii, dose: byte 70: voxels are float32 numbers"));
+}
+
+TEST(LabelSet, ArchivesThatAreNotReadAreNamed) {
+  const std::string tgz = Deflate(Tar({{"liver.nii.gz", Nifti(Alone("liver"))}}));
+  const std::map<std::string, std::string> archives = {{tgz, ".tar.gz"},         {"7z\xbc\xaf\x27\x1c", ".7z"},
+                                                       {"Rar!\x1a\x07", ".rar"}, {"BZh91AY", "bzip2"},
+                                                       {"\xfd\x37zXZ", "xz"},    {"\x28\xb5\x2f\xfd", "Zstandard"}};
+  for (const auto& [bytes, format] : archives) {
+    for (const absl::Status& status : {ParseLabelInput("scan", bytes, "").status(), CheckLabelFormat("scan", bytes)}) {
+      EXPECT_TRUE(absl::IsInvalidArgument(status)) << format;
+      EXPECT_THAT(std::string(status.message()), HasSubstr(format));
+      EXPECT_THAT(std::string(status.message()), HasSubstr("unpack it and give the files or their folder, or pack"));
+    }
+  }
+}
+
+// The bytes that follow a header in an archive need no memory before the header is judged.
+TEST(LabelSet, AnUncompressedFileInAnArchiveHasTheLimitsOfOthers) {
+  const std::string liver = WriteNifti(Alone("liver"));
+  const std::size_t voxels = Whole().labels.size();
+  const std::string longer = Tar({{"liver.nii", liver + std::string(std::size_t{3} << 20, 'x')}});
+  ASSERT_TRUE(ParseLabelInput("labels", longer, "", voxels).ok());
+  const absl::Status many = ParseLabelInput("labels", longer, "", voxels - 1).status();
+  EXPECT_TRUE(absl::IsResourceExhausted(many)) << many;
+  EXPECT_THAT(std::string(many.message()),
+              HasSubstr(absl::StrCat("liver.nii: has ", voxels, " voxels of 2 bytes, more than ", voxels - 1)));
+  const std::string padded = Tar({{"liver.nii.gz", Nifti(Alone("liver")) + std::string(4 * voxels, 'x')}});
+  const absl::Status large = ParseLabelInput("labels", padded, "", voxels).status();
+  EXPECT_TRUE(absl::IsResourceExhausted(large)) << large;
+  EXPECT_THAT(std::string(large.message()), HasSubstr(absl::StrCat("is unpacked to more than ", 4 * voxels, " bytes")));
+}
+
 TEST(LabelSet, ReadingAnArchiveEndsWhenItIsNotWantedAnyMore) {
   const std::string liver = Nifti(Alone("liver"));
   int asked = 0;
@@ -229,15 +302,20 @@ TEST(LabelSet, AFolderAndFilesWithTheirOwnMapsAreRead) {
   write("heart.nii.gz", Nifti(Alone("heart")));
   const std::string ribs = write("model/out.nii.gz", Nifti(By("moose-ribs")));
   write("readme.txt", "text");
+  write("ct.nii", WithType(Alone("heart"), 64));
   const absl::StatusOr<LabelInput> all = ReadLabelInput({folder.string()}, {});
   ASSERT_TRUE(all.ok()) << all.status();
   EXPECT_EQ(all->meanings.labels_size(), 1 + 25);
+  EXPECT_THAT(all->volume.remarks, Contains(HasSubstr("ct.nii: byte 70: voxels are float64 numbers")));
   const absl::StatusOr<LabelInput> chosen = ReadLabelInput({folder.string()}, {"", {{"out.nii.gz", "moose-ribs"}}});
   ASSERT_TRUE(chosen.ok()) << chosen.status();
   EXPECT_EQ(chosen->meanings.SerializeAsString(), all->meanings.SerializeAsString());
   EXPECT_THAT(std::string(ReadLabelInput({ribs}, {"", {{"x.nii", "cads-555"}}}).status().message()),
               HasSubstr("x.nii=cads-555: no label file"));
   EXPECT_TRUE(absl::IsNotFound(ReadLabelInput({(folder / "model").string(), "/nowhere.nii"}, {}).status()));
+  const std::string packed = write("more.tar", Tar({{"liver.nii.gz", Nifti(Alone("liver"))}}));
+  EXPECT_THAT(std::string(ReadLabelInput({ribs, packed}, {}).status().message()),
+              HasSubstr("more.tar: an archive among other files is not read; unpack it, or give it alone"));
   std::filesystem::remove_all(folder);
 }
 

@@ -63,7 +63,7 @@ class ReadinessTest : public testing::Test {
     volume_.to_patient.translate(Eigen::Vector3d(0, 0, first));
   }
   v1::Readiness Judge() {
-    Messages fallbacks;
+    Fallbacks fallbacks;
     const auto parts = FindParts(volume_, map_, fallbacks);
     EXPECT_TRUE(parts.ok()) << parts.status();
     return JudgeReadiness(volume_, *parts, bodies_, report_);
@@ -74,6 +74,7 @@ class ReadinessTest : public testing::Test {
     ASSERT_EQ(readiness.findings_size(), 1) << readiness.DebugString();
     for (const std::string& word : words) EXPECT_THAT(readiness.findings(0).what(), HasSubstr(word));
     EXPECT_NE(readiness.findings(0).kind(), v1::FINDING_KIND_UNSPECIFIED);
+    EXPECT_THAT(readiness.findings(0).what(), testing::ContainsRegex("; (use|label|check) "));
   }
 
   static v1::LabelMap map_;

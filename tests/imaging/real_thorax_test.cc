@@ -75,7 +75,7 @@ class RealThorax : public testing::Test {
     return sum / count;
   }
   static double DiaphragmOff(const LabelVolume& volume, const std::vector<Part>& parts) {
-    Messages ignored;
+    Fallbacks ignored;
     const auto frame = FindCageFrame(volume, parts, ignored);
     const FittedCage cage(volume, parts, *frame, ignored);
     DiaphragmOptions options;

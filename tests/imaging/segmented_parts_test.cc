@@ -32,7 +32,7 @@ void JoinRibs(LabelVolume& volume, v1::LabelMap& map) {
 }
 
 // Returns the ribs' centroids [mm].
-std::map<std::string, Eigen::Vector3d> Ribs(const LabelVolume& volume, const v1::LabelMap& map, Messages& fallbacks) {
+std::map<std::string, Eigen::Vector3d> Ribs(const LabelVolume& volume, const v1::LabelMap& map, Fallbacks& fallbacks) {
   std::map<std::string, Eigen::Vector3d> centroids;
   const auto parts = FindParts(volume, map, fallbacks);
   EXPECT_TRUE(parts.ok()) << parts.status();
@@ -47,18 +47,31 @@ std::map<std::string, Eigen::Vector3d> Ribs(const LabelVolume& volume, const v1:
   return centroids;
 }
 
+// Returns the last fallback of a kind; null if there is none.
+const Fallback* Of(v1::AssumptionKind kind, const Fallbacks& fallbacks) {
+  const Fallback* last = nullptr;
+  for (const Fallback& fallback : fallbacks) {
+    if (fallback.kind == kind) last = &fallback;
+  }
+  return last;
+}
+
 class RibsInOneLabel : public testing::TestWithParam<const char*> {};
 
 TEST_P(RibsInOneLabel, GetTheirSidesAndNumbers) {
   v1::LabelMap map = *ReadLabelMap("totalsegmentator");
   auto volume = MakePhantom(*FindPhantomBody(GetParam()), {.voxel = 2, .noise = 0.02, .holes = 40}, map);
   ASSERT_TRUE(volume.ok()) << volume.status();
-  Messages fallbacks;
+  Fallbacks fallbacks;
   const auto truth = Ribs(*volume, map, fallbacks);
   JoinRibs(*volume, map);
   const auto found = Ribs(*volume, map, fallbacks);
   ASSERT_EQ(truth.size(), 24u);
-  EXPECT_THAT(fallbacks, testing::Contains(testing::HasSubstr("ribs on the left: one label, divided into 12")));
+  const Fallback* left = Of(v1::ASSUMPTION_KIND_RIBS_DIVIDED, fallbacks);
+  ASSERT_NE(left, nullptr);
+  EXPECT_THAT(left->text, testing::HasSubstr("ribs on the left: one label, divided into 12"));
+  EXPECT_THAT(left->parts, testing::ElementsAre("left"));
+  EXPECT_THAT(left->values, testing::ElementsAre(12));
   for (const auto& [name, middle] : truth) {
     ASSERT_TRUE(found.contains(name)) << name;
     EXPECT_LT((found.at(name) - middle).norm(), 4) << name;
@@ -76,7 +89,7 @@ TEST(RibsWithNumbers, StayAloneBesideALabelOfRibsWithoutANumber) {
     label.mutable_anatomy()->set_number(0);
     label.mutable_anatomy()->set_side(v1::SIDE_UNSPECIFIED);
   }
-  Messages fallbacks;
+  Fallbacks fallbacks;
   const auto parts = FindParts(*volume, map, fallbacks);
   ASSERT_TRUE(parts.ok()) << parts.status();
   const auto named = [&](const char* name) {
@@ -84,7 +97,9 @@ TEST(RibsWithNumbers, StayAloneBesideALabelOfRibsWithoutANumber) {
   };
   EXPECT_EQ(named("rib-1-left"), 1);
   EXPECT_EQ(named("rib-12-left"), 0);
-  EXPECT_THAT(fallbacks, testing::Contains(testing::HasSubstr("without a number was left out")));
+  const Fallback* out = Of(v1::ASSUMPTION_KIND_RIBS_LEFT_OUT, fallbacks);
+  ASSERT_NE(out, nullptr);
+  EXPECT_THAT(out->text, testing::HasSubstr("without a number was left out"));
 }
 
 // The bodies whose lowest ribs are less than two voxels apart.
@@ -98,7 +113,7 @@ TEST(LabelNames, AreNoPaths) {
     for (v1::LabelMeaning& label : *map.mutable_labels()) {
       if (IsRib(label)) label.set_name(name);
     }
-    Messages fallbacks;
+    Fallbacks fallbacks;
     const absl::Status status = FindParts(*volume, map, fallbacks).status();
     EXPECT_TRUE(absl::IsInvalidArgument(status)) << name << ": " << status;
   }

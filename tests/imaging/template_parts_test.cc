@@ -49,7 +49,7 @@ LabelVolume Without(bool (*gone)(const v1::LabelMeaning&), const PhantomBody& bo
 }
 
 std::vector<Part> Seen(const LabelVolume& volume) {
-  Messages ignored;
+  Fallbacks ignored;
   return *FindParts(volume, Names(), ignored);
 }
 
@@ -209,6 +209,16 @@ TEST(TemplateParts, APatientWithoutRibsIsFilledMarkedAndNeverBetterThanWithCare)
   EXPECT_EQ(report.readiness().verdict(), v1::READINESS_VERDICT_USABLE_WITH_CARE) << report.readiness().DebugString();
   EXPECT_THAT(report.readiness().findings(0).what(), HasSubstr("filled from the generated thorax"));
   EXPECT_THAT(report.fallbacks(), Contains(HasSubstr("from the generated thorax, scaled by 0.8")));
+  ASSERT_EQ(report.assumptions_size(), report.fallbacks_size());
+  for (int i = 0; i < report.assumptions_size(); ++i) {
+    const v1::Assumption& assumption = report.assumptions(i);
+    const bool scaled = report.fallbacks(i).find("scaled by") != std::string::npos;
+    EXPECT_EQ(assumption.kind() == v1::ASSUMPTION_KIND_TEMPLATE, scaled) << report.fallbacks(i);
+    if (scaled) {
+      EXPECT_EQ(assumption.parts_size(), report.fill().parts_size());
+      EXPECT_EQ(assumption.values_size(), 4);
+    }
+  }
   EXPECT_GT(report.fill().diaphragm_share(), 0.1) << "the wall is the template's";
   for (const v1::PatientSurface& surface : report.surfaces()) {
     EXPECT_EQ(surface.from_template(), surface.label_volume_ml() == 0) << surface.body();

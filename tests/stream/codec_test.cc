@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "absl/strings/match.h"
 #include "server/mechanics/skinning/body_points.h"
 #include "server/mechanics/step/step.h"
 #include "server/session/models.h"
@@ -112,8 +113,12 @@ TEST_P(CodecContract, RefusesWhatItCannotHold) {
   for (const float far : {1e4F, 1e30F}) {
     Floats positions = Thorax().shape.rest;
     positions(1, 5) = far;
-    EXPECT_TRUE(absl::IsOutOfRange(codec->Encode(positions, 0.1 * kMillimetre).status())) << far;
+    const absl::Status status = codec->Encode(positions, 0.1 * kMillimetre).status();
+    EXPECT_TRUE(absl::IsOutOfRange(status)) << far;
+    EXPECT_TRUE(absl::StrContains(status.message(), "take a larger")) << status;
   }
+  const absl::Status fine = codec->Encode(Thorax().shape.rest, 1e-12).status();
+  EXPECT_TRUE(absl::StartsWith(fine.message(), "max_error_mm: ")) << fine;
 }
 
 TEST_P(CodecContract, HoldsNothingAndOneVertex) {

@@ -7,15 +7,18 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/imaging/dicom_file.h"
+#include "server/imaging/gzip.h"
 #include "server/imaging/label_file.h"
 #include "server/imaging/labels/label_set.h"
+#include "server/imaging/nifti.h"
 
 namespace phrenic::imaging {
 namespace {
 
-constexpr std::size_t kTarMark = 257;                     // byte of a tar file at which "ustar" is
 constexpr std::size_t kMostBytes = std::size_t{4} << 30;  // of all files
 constexpr int kMostEntries = 5000;                        // also folders and files that are left out
+constexpr std::size_t kMostVoxelBytes = 4;                // of a file, for each voxel that a volume may have
 
 using ArchiveReader = std::unique_ptr<archive, decltype(&archive_read_free)>;
 
@@ -41,19 +44,37 @@ absl::Status ReadBlock(const std::string& name, archive* reader, std::size_t& le
   return absl::OkStatus();
 }
 
+// Reads on in a label file whose first block is `bytes`. An uncompressed NIfTI file is refused by its header, and read
+// to the end that the header declares.
+absl::Status ReadRest(const std::string& name, archive* reader, const std::string& file, std::size_t max_voxels,
+                      std::size_t& left, std::string& bytes) {
+  std::size_t wanted = kMostBytes;
+  if (!IsGzip(bytes) && !IsDicom(bytes)) {
+    const absl::StatusOr<std::size_t> length = NiftiLength(file, bytes, max_voxels);
+    if (!length.ok()) return length.status();
+    wanted = *length;
+  }
+  for (std::size_t before = 0; before < bytes.size() && bytes.size() < wanted;) {
+    before = bytes.size();
+    if (absl::Status status = ReadBlock(name, reader, left, bytes); !status.ok()) return status;
+    if (bytes.size() / kMostVoxelBytes <= max_voxels) continue;
+    return absl::ResourceExhaustedError(absl::StrCat(file, ": is unpacked to more than ", kMostVoxelBytes * max_voxels,
+                                                     " bytes, the most for a volume of ", max_voxels,
+                                                     " voxels; crop it to the thorax"));
+  }
+  return absl::OkStatus();
+}
+
 // Adds the file that the reader is at. One that is no label file is left out after its first block: it may be huge.
 absl::Status AddFile(const std::string& name, archive* reader, const std::string& file, const std::string& choice,
                      std::size_t max_voxels, std::size_t& left, LabelSet& labels) {
   std::string bytes;
   if (absl::Status status = ReadBlock(name, reader, left, bytes); !status.ok()) return status;
-  if (!IsLabelFile(bytes)) {
-    labels.LeaveOut(file);
+  if (const LabelStart start = StartOfLabels(file, bytes); !start.readable) {
+    labels.LeaveOut(file, start.problem);
     return absl::OkStatus();
   }
-  for (std::size_t before = 0; before < bytes.size();) {
-    before = bytes.size();
-    if (absl::Status status = ReadBlock(name, reader, left, bytes); !status.ok()) return status;
-  }
+  if (absl::Status status = ReadRest(name, reader, file, max_voxels, left, bytes); !status.ok()) return status;
   absl::StatusOr<LabelVolume> volume = ParseLabels(file, bytes, max_voxels);
   if (!volume.ok()) return volume.status();
   return labels.Add(file, *std::move(volume), choice);
@@ -68,10 +89,6 @@ std::string PathOf(archive_entry* entry, int number) {
 }
 
 }  // namespace
-
-bool IsArchive(std::string_view bytes) {
-  return bytes.starts_with("PK\x03\x04") || (bytes.size() > kTarMark && bytes.substr(kTarMark).starts_with("ustar"));
-}
 
 absl::StatusOr<LabelVolume> ParseLabelArchive(const std::string& name, std::string_view bytes,
                                               const std::string& choice, std::size_t max_voxels,
@@ -100,8 +117,8 @@ absl::StatusOr<LabelVolume> ParseLabelArchive(const std::string& name, std::stri
   }
   if (code != ARCHIVE_EOF) return Damaged(name, reader.get());
   if (labels.empty()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(name, ": has no label file: pack NIfTI, DICOM Segmentation or RT Structure Set"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        name, ": has no label file: pack NIfTI, DICOM Segmentation or RT Structure Set", labels.LeftOutWords()));
   }
   return labels.Finish();
 }

@@ -12,14 +12,12 @@
 
 namespace phrenic::imaging {
 
-// True if the first bytes are those of a zip or tar archive.
-bool IsArchive(std::string_view bytes);
-
 // Reads every label file of an archive (label_file.h) as one volume (label_set.h); `choice` selects maps, as ReadMaps.
-// Files of other formats are left out, and a remark names them; archives in the archive are not read. INVALID_ARGUMENT
-// "name: ..." for a damaged archive, or one without label files; RESOURCE_EXHAUSTED for a file of more voxels, 4 GiB
-// of files or 5,000 entries; CANCELLED when `stopped`, asked before each file, is true; the errors of ParseLabels and
-// LabelSet. Thread-safe.
+// Files of other formats, and NIfTI files whose header is not supported, are left out, and a remark says why; archives
+// in the archive are not read. INVALID_ARGUMENT "name: ..." for a damaged archive, or one without label files, with why
+// files were left out; RESOURCE_EXHAUSTED for a file of more voxels, before they are unpacked, or of more than 4
+// bytes for each of `max_voxels`, for 4 GiB of files, or for 5,000 entries; CANCELLED when `stopped`, asked before each
+// file, is true; the errors of ParseLabels and LabelSet. Thread-safe.
 absl::StatusOr<LabelVolume> ParseLabelArchive(const std::string& name, std::string_view bytes,
                                               const std::string& choice, std::size_t max_voxels = kMaxVoxels,
                                               const std::function<bool()>& stopped = nullptr);

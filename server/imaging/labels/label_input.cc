@@ -80,9 +80,13 @@ class SetReader {
     if (!bytes.has_value()) {
       return absl::NotFoundError(absl::StrCat("cannot read the label file ", path, "; check the path"));
     }
-    if (!named && !IsLabelFile(*bytes)) {
-      labels_.LeaveOut(path);
+    if (const LabelStart start = StartOfLabels(path, *bytes); !named && !start.readable) {
+      labels_.LeaveOut(path, start.problem);
       return absl::OkStatus();
+    }
+    if (IsArchive(*bytes)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(path, ": an archive among other files is not read; unpack it, or give it alone"));
     }
     absl::StatusOr<LabelVolume> volume = ParseLabels(path, *bytes);
     if (!volume.ok()) return volume.status();
@@ -92,7 +96,8 @@ class SetReader {
   absl::StatusOr<LabelVolume> Finish(const std::string& first) {
     if (labels_.empty()) {
       return absl::NotFoundError(
-          absl::StrCat(first, ": has no label file: NIfTI, DICOM Segmentation or RT Structure Set; check the path"));
+          absl::StrCat(first, ": has no label file: NIfTI, DICOM Segmentation or RT Structure Set; check the path",
+                       labels_.LeftOutWords()));
     }
     for (const auto& [file, map] : choices_.by_file) {
       if (used_.contains(file)) continue;

@@ -35,6 +35,14 @@ std::string GridWords(const LabelVolume& volume) {
                          origin.y(), origin.z());
 }
 
+// Returns the first files' names and how many more there are.
+std::string Listed(const std::vector<std::string>& files) {
+  constexpr std::size_t kMostNamed = 20;
+  const std::size_t named = std::min(files.size(), kMostNamed);
+  const std::string names = absl::StrJoin(files.begin(), files.begin() + static_cast<std::ptrdiff_t>(named), ", ");
+  return named == files.size() ? names : absl::StrCat(names, " and ", files.size() - named, " more");
+}
+
 // Names a file's only label by the file, if the file names a structure that is known.
 bool NameByFile(const v1::LabelMap& known, const std::string& file, const std::map<Label, Extent>& extents,
                 LabelVolume& volume) {
@@ -206,15 +214,24 @@ void LabelSet::DropHidden() {
   for (Label& label : united_.labels) label = becomes[label];
 }
 
+std::string LabelSet::LeftOutWords() const {
+  std::string words;
+  for (const auto& [problem, files] : left_out_) {
+    if (!problem.empty()) absl::StrAppend(&words, "; left out: ", Listed(files), ": ", problem);
+  }
+  return words;
+}
+
 absl::StatusOr<LabelVolume> LabelSet::Finish() {
   if (empty()) return absl::InvalidArgumentError("there is no label file");
   DropHidden();
   if (!unknown_.empty()) {
     united_.remarks.push_back(absl::StrCat("not known by their names or numbers: ", absl::StrJoin(unknown_, ", ")));
   }
-  if (!left_out_.empty()) {
-    united_.remarks.push_back(
-        absl::StrCat("left out, because they are not label files: ", absl::StrJoin(left_out_, ", ")));
+  for (const auto& [problem, files] : left_out_) {
+    united_.remarks.push_back(problem.empty()
+                                  ? absl::StrCat("left out, because they are not label files: ", Listed(files))
+                                  : absl::StrCat("left out: ", Listed(files), ": ", problem));
   }
   return std::move(united_);
 }

@@ -24,8 +24,11 @@ class LabelSet {
   // first file's, or a structure is in another file too with other voxels (Dice below 0.8); RESOURCE_EXHAUSTED for
   // more than kMostLabelFiles, or 65,535 labels; the errors of ReadMaps.
   absl::Status Add(const std::string& name, LabelVolume volume, const std::string& choice);
-  // Notes a file that is not a label file.
-  void LeaveOut(const std::string& name) { left_out_.push_back(name); }
+  // Notes a file that is not read: `problem` is what is wrong with it, and the remedy; empty for a file of another
+  // format.
+  void LeaveOut(const std::string& name, const std::string& problem) { left_out_[problem].push_back(name); }
+  // Returns which files with a problem were left out, and why: "; left out: a.nii: ...". Empty without such files.
+  std::string LeftOutWords() const;
   // True if no file was added.
   bool empty() const { return files_ == 0; }
   // Returns the volume; its remarks name the files' maps, files that were left out, and labels that others hide or that
@@ -57,8 +60,8 @@ class LabelSet {
   std::string first_;           // file
   std::vector<Entry> entries_;  // by number - 1
   std::size_t files_ = 0;
-  std::vector<std::string> unknown_;  // files that name no known structure
-  std::vector<std::string> left_out_;
+  std::vector<std::string> unknown_;                          // files that name no known structure
+  std::map<std::string, std::vector<std::string>> left_out_;  // by problem
 };
 
 }  // namespace phrenic::imaging

@@ -49,7 +49,7 @@ void MarkAll(Mesh& mesh) {
 }
 
 absl::Status AddSurfaces(const LabelVolume& volume, const std::vector<Part>& parts, const PatientOptions& options,
-                         PatientProgress progress, Patient& patient) {
+                         PatientProgress progress, Patient& patient, Fallbacks& fallbacks) {
   const double voxel_ml = std::abs(volume.to_patient.linear().determinant()) / 1000;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const Part& part = parts[p];
@@ -61,7 +61,7 @@ absl::Status AddSurfaces(const LabelVolume& volume, const std::vector<Part>& par
                                     ? absl::StatusOr<Mesh>(part.surface)
                                     : SurfaceOf(volume, part.mask, edges * options.edge_length);
     if (!mesh.ok()) {
-      patient.report.add_fallbacks(absl::StrCat(part.name, ": left out, ", std::string(mesh.status().message())));
+      fallbacks.push_back({absl::StrCat(part.name, ": left out, ", std::string(mesh.status().message()))});
       continue;
     }
     v1::PatientSurface& surface = *patient.report.add_surfaces();
@@ -78,17 +78,22 @@ absl::Status AddSurfaces(const LabelVolume& volume, const std::vector<Part>& par
 }
 
 // Returns the parts of the volume, and those filled from the template if that is wanted and the volume lacks some.
-FilledParts Fill(const LabelVolume& volume, const std::vector<Part>& seen, bool wanted, Messages& fallbacks) {
+FilledParts Fill(const LabelVolume& volume, const std::vector<Part>& seen, bool wanted, Fallbacks& fallbacks) {
   if (!wanted) return {volume, seen, {}};
   FilledParts filled = FillFromTemplate(volume, seen);
   const v1::TemplateFill& report = filled.report;
   if (!report.not_filled().empty()) {
-    fallbacks.push_back(absl::StrCat("nothing was filled from the template: ", report.not_filled()));
+    fallbacks.push_back({absl::StrCat("nothing was filled from the template: ", report.not_filled())});
   }
   if (report.parts().empty()) return filled;
-  fallbacks.push_back(absl::StrFormat(
-      "from the generated thorax, scaled by %.2f, %.2f and %.2f along x, y and z, %.1f mm from what is seen: %s",
-      report.scale(0), report.scale(1), report.scale(2), report.residual_mm(), absl::StrJoin(report.parts(), ", ")));
+  fallbacks.push_back(
+      {absl::StrFormat(
+           "from the generated thorax, scaled by %.2f, %.2f and %.2f along x, y and z, %.1f mm from what is seen: %s",
+           report.scale(0), report.scale(1), report.scale(2), report.residual_mm(),
+           absl::StrJoin(report.parts(), ", ")),
+       v1::ASSUMPTION_KIND_TEMPLATE,
+       {report.parts().begin(), report.parts().end()},
+       {report.scale(0), report.scale(1), report.scale(2), report.residual_mm()}});
   return filled;
 }
 
@@ -121,6 +126,16 @@ void ReportRibs(const CageFrame& frame, Patient& patient) {
   }
 }
 
+void ReportFallbacks(const Fallbacks& fallbacks, v1::PatientReport& report) {
+  for (const Fallback& fallback : fallbacks) {
+    report.add_fallbacks(fallback.text);
+    v1::Assumption& assumption = *report.add_assumptions();
+    assumption.set_kind(fallback.kind);
+    assumption.mutable_parts()->Assign(fallback.parts.begin(), fallback.parts.end());
+    assumption.mutable_values()->Assign(fallback.values.begin(), fallback.values.end());
+  }
+}
+
 // INVALID_ARGUMENT if two bodies would have one name.
 absl::Status CheckBodyNames(const std::vector<Part>& parts) {
   std::set<std::string> names = {kSheetBody, kMiddleBody, kWallBody};
@@ -139,8 +154,10 @@ absl::StatusOr<Patient> MakePatient(const LabelVolume& given, const v1::LabelMap
                                     const PatientOptions& options, PatientProgress progress) {
   Patient patient;
   patient.report.set_name(options.name);
-  Messages fallbacks = given.remarks;
-  v1::LabelMap meanings = Resolve(map, given, fallbacks);
+  std::vector<std::string> remarks = given.remarks;
+  v1::LabelMap meanings = Resolve(map, given, remarks);
+  Fallbacks fallbacks;
+  for (std::string& remark : remarks) fallbacks.push_back({std::move(remark)});
   std::optional<LabelVolume> united;
   if (HasRepeatedNames(meanings)) meanings = UniteLabels(meanings, united.emplace(given));
   const LabelVolume& volume = united.has_value() ? *united : given;
@@ -153,7 +170,7 @@ absl::StatusOr<Patient> MakePatient(const LabelVolume& given, const v1::LabelMap
   if (absl::Status status = CheckBodyNames(parts); !status.ok()) return status;
   const absl::StatusOr<CageFrame> frame = FindCageFrame(filled.volume, parts, fallbacks);
   if (!frame.ok()) return frame.status();
-  absl::Status status = AddSurfaces(filled.volume, parts, options, progress, patient);
+  absl::Status status = AddSurfaces(filled.volume, parts, options, progress, patient, fallbacks);
   if (!status.ok()) return status;
   if (!progress(1 - kDiaphragmsShare, "diaphragm")) return absl::CancelledError("making the patient was cancelled");
   const FittedCage cage(filled.volume, parts, *frame, fallbacks);
@@ -169,7 +186,7 @@ absl::StatusOr<Patient> MakePatient(const LabelVolume& given, const v1::LabelMap
   ReportRibs(*frame, patient);
   *patient.report.mutable_readiness() = JudgeReadiness(volume, *seen, patient.bodies, patient.report);
   patient.scene = PatientScene(pattern, patient.bodies, *frame, options.name);
-  for (std::string& message : fallbacks) patient.report.add_fallbacks(std::move(message));
+  ReportFallbacks(fallbacks, patient.report);
   return patient;
 }
 

@@ -61,7 +61,8 @@ void FindCutRibs(const LabelVolume& volume, const std::vector<Part>& parts, Find
   }
   if (cut.empty()) return;
   Add(cut.size() >= kMost,
-      absl::StrFormat("the border of the volume cuts %s: their motion is that of the part that is left",
+      absl::StrFormat("the border of the volume cuts %s: their motion is that of the part that is left; "
+                      "use a scan that has whole ribs",
                       absl::StrJoin(cut, ", ")),
       {v1::FINDING_KIND_RIBS_CUT, cut}, findings);
 }
@@ -76,9 +77,11 @@ void FindFilled(const v1::TemplateFill& fill, Findings& findings) {
   constexpr double kMostOff = 15;  // residual of the template's registration [mm]
   if (fill.parts().empty()) return;
   Add(fill.residual_mm() > kMostOff,
-      absl::StrFormat("not seen, but filled from the generated thorax, which fits what is seen to %.1f mm: %s; their "
-                      "shape is not the person's, and %.0f %% of the diaphragm rests on them",
-                      fill.residual_mm(), absl::StrJoin(fill.parts(), ", "), 100 * fill.diaphragm_share()),
+      absl::StrFormat(
+          "not seen, but filled from the generated thorax, which fits what is seen to %.1f mm: %s; their "
+          "shape is not the person's, and %.0f %% of the diaphragm rests on them; label them if the scan shows "
+          "them",
+          fill.residual_mm(), absl::StrJoin(fill.parts(), ", "), 100 * fill.diaphragm_share()),
       {v1::FINDING_KIND_FILLED,
        {fill.parts().begin(), fill.parts().end()},
        {fill.residual_mm(), fill.diaphragm_share()}},
@@ -102,7 +105,8 @@ void FindMissingRibs(const std::vector<Part>& parts, const v1::PatientReport& re
   }
   if (missing.empty()) return;
   Add(missing.size() >= kMost,
-      absl::StrFormat("ribs are missing (%s): the wall, the costal margin and the axes of the cage are guessed there",
+      absl::StrFormat("ribs are missing (%s): the wall, the costal margin and the axes of the cage are guessed there; "
+                      "label them, or use a scan that shows them",
                       absl::StrJoin(missing, ", ")),
       {v1::FINDING_KIND_RIBS_MISSING, bodies}, findings);
 }
@@ -120,7 +124,7 @@ void FindMissingOrgans(const std::vector<Part>& parts, Findings& findings) {
   if (missing.empty()) return;
   for (const std::string& one : missing) organs.push_back(absl::StrReplaceAll(one, {{" ", "-"}}));
   Add(missing.size() == 3,
-      absl::StrFormat("no label for %s: the domes are guessed from the lungs alone there",
+      absl::StrFormat("no label for %s: the domes are guessed from the lungs alone there; label them",
                       absl::StrJoin(missing, ", ")),
       {v1::FINDING_KIND_ORGANS_MISSING, organs}, findings);
 }
@@ -131,8 +135,10 @@ void FindExtrapolation(const v1::DerivedDiaphragm& sheet, Findings& findings) {
   std::vector<std::string> sectors;
   for (const v1::ExtrapolatedSector& sector : sheet.sectors()) sectors.push_back(sector.where());
   Add(sheet.extrapolated() > kMost,
-      absl::StrFormat("%.0f %% of the diaphragm is extrapolated, not seen (%s)", 100 * sheet.extrapolated(),
-                      absl::StrJoin(sectors, "; ")),
+      absl::StrFormat(
+          "%.0f %% of the diaphragm is extrapolated, not seen (%s); label the organs and ribs beside it, or the "
+          "diaphragm itself",
+          100 * sheet.extrapolated(), absl::StrJoin(sectors, "; ")),
       {v1::FINDING_KIND_EXTRAPOLATED, sectors, {sheet.extrapolated()}}, findings);
 }
 
@@ -182,11 +188,16 @@ void FindOddSheet(const Mesh& sheet, const v1::DerivedDiaphragm& report, Finding
   }
   if (const int crossings = SelfCrossings(sheet, kCell); crossings > 0) {
     Add(crossings >= kMostCrossings,
-        absl::StrFormat("the diaphragm crosses itself at rest in %d places: it is crumpled", crossings),
+        absl::StrFormat("the diaphragm crosses itself at rest in %d places: it is crumpled; check that the labels "
+                        "of lungs and organs do not overlap or leave gaps",
+                        crossings),
         {v1::FINDING_KIND_CROSSED, {}, {static_cast<double>(crossings)}}, findings);
   }
   if (report.area_cm2() < kSmallest || report.area_cm2() > kLargest) {
-    Add(false, absl::StrFormat("the diaphragm has %.0f cm2; adults have 700 to 1,300", report.area_cm2()),
+    Add(false,
+        absl::StrFormat("the diaphragm has %.0f cm2; adults have 700 to 1,300; check the voxels' spacing, and that the "
+                        "scan shows the whole thorax of an adult",
+                        report.area_cm2()),
         {v1::FINDING_KIND_ODD_AREA, {}, {report.area_cm2()}}, findings);
   }
 }

@@ -33,7 +33,7 @@ struct DerivedThorax {
   CageFrame frame;
   Mesh cage;                   // [m]: FittedCage::Tube
   DerivedDiaphragm diaphragm;  // its mesh: the scanned one (DrawLayers), or empty
-  Messages fallbacks;
+  Fallbacks fallbacks;
 };
 
 // Derives both from surfaces. `edge_length` is that of the middle surface [mm]. The errors of VoxeliseParts,

@@ -10,7 +10,7 @@ namespace phrenic::imaging {
 
 struct SurfaceScene {
   v1::Scene scene;
-  Messages fallbacks;
+  Fallbacks fallbacks;
 };
 
 // Returns the pattern, the scene `thorax`, with the bodies of `surfaces`: those with an anatomy of ribs, cartilages,

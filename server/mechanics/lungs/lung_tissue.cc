@@ -17,20 +17,21 @@ constexpr double kRegularisation = 1e-9;    // of the mean of the diagonal
 
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-bool IsIn(double value, double low, double high) { return value >= low && value <= high; }
+// Checks a number of LungElasticity. NaN is outside every range.
+absl::Status CheckNumber(const char* field, double value, double low, double high, const char* unit) {
+  if (value >= low && value <= high) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(field, ": ", value, " is outside ", low, " to ", high, unit, "; set a number within"));
+}
 
 absl::Status CheckElasticity(const LungElasticity& e) {
-  if (!IsIn(e.edge, 1e-4, 1)) return absl::InvalidArgumentError("the bricks of a lung have edges of 0.1 mm to 1 m");
-  if (!IsIn(e.poisson, 0, 0.49)) return absl::InvalidArgumentError("Poisson's ratio of a lung is 0 to 0.49");
-  if (!IsIn(e.contact, 1e-3, 1e6)) {
-    return absl::InvalidArgumentError("the contact of a lung has a stiffness of 0.001 to 1e6 moduli a metre");
-  }
-  if (!(e.weight.rise.norm() <= 20) || !IsIn(e.weight.room, 0, 100)) {
-    return absl::InvalidArgumentError(
-        "the weight of a lung raises its modulus by at most e^20 a metre, and its room is 0 to 100");
-  }
-  if (!IsIn(e.tangential, 0, 1e6)) {
-    return absl::InvalidArgumentError("a lung's stiffness along its surface is 0 to 1e6 moduli a metre");
+  constexpr double kMostRise = 20;  // [1/m]: e^20 a metre
+  for (const absl::Status& status :
+       {CheckNumber("edge", e.edge, 1e-4, 1, " m"), CheckNumber("poisson", e.poisson, 0, 0.49, ""),
+        CheckNumber("contact", e.contact, 1e-3, 1e6, " 1/m"), CheckNumber("tangential", e.tangential, 0, 1e6, " 1/m"),
+        CheckNumber("weight.rise", e.weight.rise.norm(), 0, kMostRise, " 1/m"),
+        CheckNumber("weight.room", e.weight.room, 0, 100, "")}) {
+    if (!status.ok()) return status;
   }
   return absl::OkStatus();
 }
@@ -70,16 +71,20 @@ std::pair<std::vector<bool>, Points> Held(const ConstPoints& displacement) {
 absl::Status CheckLungSurface(const Mesh& surface, double edge) {
   if (absl::Status status = Validate(surface); !status.ok()) return status;
   if (surface.triangles.cols() == 0 || !AnalyseTopology(surface).watertight()) {
-    return absl::InvalidArgumentError("the surface of a lung must be closed: see phrenic inspect");
+    return absl::InvalidArgumentError(
+        "surface: the surface of a lung must be closed; see its holes with phrenic inspect, and fill them with phrenic "
+        "convert --repair holes");
   }
   if (SignedVolume(surface.vertices, surface.triangles) <= 0) {
-    return absl::InvalidArgumentError("the surface of a lung must face outwards: reverse its triangles");
+    return absl::InvalidArgumentError(
+        "surface: the surface of a lung must face outwards; reverse its triangles with phrenic convert --repair "
+        "orient");
   }
   const Eigen::Vector3d size = surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff();
   const double bricks = (size / edge).array().ceil().prod();
   if (bricks <= LungTissue::kMostBricks) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat("a lung has up to ", LungTissue::kMostBricks, " bricks, not ", bricks,
-                                                 ": make their edge longer, or check the surface's unit"));
+  return absl::InvalidArgumentError(absl::StrCat("edge: a lung has up to ", LungTissue::kMostBricks, " bricks, not ",
+                                                 bricks, "; make their edge longer, or check the surface's unit"));
 }
 
 LungTissue::LungTissue(const Mesh& surface, const LungElasticity& elasticity)
@@ -108,7 +113,9 @@ absl::StatusOr<LungTissue> LungTissue::Make(const Mesh& surface, const LungElast
   if (stop.Stopped()) return stop.status();
   std::optional<LayeredCholesky> factors = tissue.Factorise(std::vector<bool>(tissue.places_.size(), false), stop);
   if (stop.Stopped()) return stop.status();
-  if (!factors) return absl::InvalidArgumentError("the stiffness of a lung cannot be factorised: check its surface");
+  if (!factors)
+    return absl::InvalidArgumentError(
+        "surface: the stiffness of a lung with it cannot be factorised; look for slivers with phrenic inspect");
   tissue.factors_ = std::make_shared<const LayeredCholesky>(*std::move(factors));
   return tissue;
 }
@@ -227,7 +234,9 @@ absl::StatusOr<Points> LungTissue::SolveThrough(const ConstPoints& points, const
   const auto factors =
       LayeredCholesky::Make(Stiffness(std::vector<bool>(places_.size(), false)) + springs, LayerStarts(), {});
   if (factors && forces.allFinite()) return factors->Solve(forces.reshaped()).reshaped(3, grid_.nodes().cols());
-  return absl::InvalidArgumentError("the deformation through the points cannot be solved for: check their numbers");
+  return absl::InvalidArgumentError(
+      "points: the deformation through them cannot be solved for; check that their places and displacements are finite "
+      "and of a lung's size");
 }
 
 double LungTissue::Energy(const Points& nodes, const ConstPoints& displacement) const {

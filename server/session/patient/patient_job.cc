@@ -11,7 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "server/imaging/dicom_file.h"
-#include "server/imaging/labels/label_archive.h"
+#include "server/imaging/label_file.h"
 #include "server/imaging/labels/label_map.h"
 #include "server/mesh/units.h"
 #include "server/meshio/meshio.h"

@@ -78,10 +78,10 @@ BasisCodec::Doubles BasisCodec::Sum(const Parts& parts) const {
 
 absl::StatusOr<std::string> BasisCodec::Encode(const Floats& positions, double max_error) const {
   const auto step = GridStep(positions, max_error);
-  if (!step.has_value() || !IsGridStep(*step)) return absl::OutOfRangeError("the bound is finer than float32");
+  if (!step.has_value() || !IsGridStep(*step)) return absl::OutOfRangeError(kTooFine);
   const Parts parts = FindCoefficients(positions);
   const auto steps = StepsFrom(Sum(parts), positions, max_error, *step, predictor_.order());
-  if (!steps.has_value()) return absl::OutOfRangeError("a vertex is too far from rest");
+  if (!steps.has_value()) return absl::OutOfRangeError(kTooFar);
   const Steps residuals = predictor_.Residuals(*steps);
   const bool fewer = Zeros(residuals) > Zeros(*steps);
   const Rest rest = steps->empty() ? Rest::kNothing : fewer ? Rest::kPredicted : Rest::kAsItIs;

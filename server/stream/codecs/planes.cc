@@ -14,7 +14,7 @@ constexpr double kMost = 65535;
 
 absl::StatusOr<std::string> PlanesCodec::Encode(const Floats& positions, double max_error) const {
   const auto step = GridStep(positions, max_error);
-  if (!step.has_value()) return absl::OutOfRangeError("the bound is finer than float32");
+  if (!step.has_value()) return absl::OutOfRangeError(kTooFine);
   Eigen::Vector3f corner = Eigen::Vector3f::Zero();
   if (positions.cols() > 0) corner = positions.rowwise().minCoeff();
   const std::ptrdiff_t count = positions.size();
@@ -23,7 +23,7 @@ absl::StatusOr<std::string> PlanesCodec::Encode(const Floats& positions, double 
   for (int axis = 0; axis < 3; ++axis) {
     for (Eigen::Index i = 0; i < positions.cols(); ++i, ++place) {
       const double q = std::floor((static_cast<double>(positions(axis, i)) - corner[axis]) / *step + 0.5);
-      if (q > kMost) return absl::OutOfRangeError("the positions lie more than 65,535 steps apart");
+      if (q > kMost) return absl::OutOfRangeError(kTooFar);
       const auto value = static_cast<unsigned>(q);
       planes[place] = static_cast<char>(value & 0xff);
       planes[place + count] = static_cast<char>(value >> 8);

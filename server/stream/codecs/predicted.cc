@@ -23,10 +23,10 @@ PredictedCodec::PredictedCodec(const RestShape& shape)
 
 absl::StatusOr<std::string> PredictedCodec::Encode(const Floats& positions, double max_error) const {
   const auto step = GridStep(positions, max_error);
-  if (!step.has_value() || !IsGridStep(*step)) return absl::OutOfRangeError("the bound is finer than float32");
+  if (!step.has_value() || !IsGridStep(*step)) return absl::OutOfRangeError(kTooFine);
   Steps displacements(rest_.size());
   if (!CountSteps(InOrder(positions, predictor_.order()), rest_, 1 / *step, displacements)) {
-    return absl::OutOfRangeError("a vertex is too far from rest");
+    return absl::OutOfRangeError(kTooFar);
   }
   std::string bytes;
   Append(*step, bytes);

@@ -230,10 +230,20 @@ TEST(LungTissue, RejectsWhatIsNoLung) {
   Mesh in_millimetres = LungShape();
   in_millimetres.vertices *= 1000;
   EXPECT_THAT(LungTissue::Make(in_millimetres).status().message(), HasSubstr("check the surface's unit"));
-  EXPECT_FALSE(LungTissue::Make(LungShape(), {.edge = kFree}).ok());
-  EXPECT_FALSE(LungTissue::Make(LungShape(), {.poisson = 0.5}).ok());
-  EXPECT_FALSE(LungTissue::Make(LungShape(), {.contact = 0}).ok());
-  EXPECT_FALSE(LungTissue::Make(LungShape(), {.tangential = -1}).ok());
+}
+
+TEST(LungTissue, ErrorsOfNumbersNameTheFieldTheRangeAndTheRemedy) {
+  const std::pair<LungElasticity, const char*> faults[] = {
+      {{.edge = kFree}, "edge: nan is outside 0.0001 to 1 m; set a number within"},
+      {{.poisson = 0.5}, "poisson: 0.5 is outside 0 to 0.49; set"},
+      {{.contact = 0}, "contact: 0 is outside 0.001 to 1e+06 1/m; set"},
+      {{.tangential = -1}, "tangential: -1 is outside 0 to 1e+06 1/m; set"},
+      {{.weight = {.rise = {0, 0, 21}}}, "weight.rise: 21 is outside 0 to 20 1/m; set"},
+      {{.weight = {.room = -1}}, "weight.room: -1 is outside 0 to 100; set"},
+  };
+  for (const auto& [elasticity, words] : faults) {
+    EXPECT_THAT(LungTissue::Make(LungShape(), elasticity).status().message(), HasSubstr(words));
+  }
 }
 
 TEST(LungTissue, IsNotFactorisedForCallersThatHaveGone) {

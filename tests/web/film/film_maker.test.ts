@@ -33,6 +33,7 @@ const text = Buffer.from(stored(toBinary(OfflineMotionSchema, motion))).toString
 let page: string | undefined, refusal: string | undefined, supported: boolean;
 let drawn: DisplayedFrame[], written: string[], words: string[], ends: number, begins: number;
 let afterAdd: () => void;
+let opened: HTMLCanvasElement;
 
 class FakeExports {
   readonly progress = new Signal<ExportProgress>({ kind: "idle" });
@@ -81,7 +82,10 @@ function maker(): { film: FilmMaker; exports: FakeExports } {
       async () => decoderModule(),
     ),
     stage,
-    async () => writer,
+    async (canvas) => {
+      opened = canvas;
+      return writer;
+    },
     () => supported,
   );
   return { film, exports };
@@ -93,7 +97,7 @@ beforeEach(() => {
   afterAdd = () => undefined;
   URL.createObjectURL = () => "blob:film";
   URL.revokeObjectURL = () => undefined;
-  const pen = { fillRect: () => 0, drawImage: () => 0, measureText: () => ({ width: 1 }), fillText: (each: string) => words.push(each) }; // prettier-ignore
+  const pen = { save: () => 0, restore: () => 0, translate: () => 0, scale: () => 0, fillRect: () => 0, drawImage: () => 0, measureText: () => ({ width: 1 }), fillText: (each: string) => words.push(each) }; // prettier-ignore
   vi.spyOn(HTMLCanvasElement.prototype, "getContext").mockReturnValue(
     pen as unknown as CanvasRenderingContext2D & null,
   );
@@ -152,17 +156,33 @@ describe("a film", () => {
   });
 });
 
+test("AFilmHasTheHeightThatIsChosen", async () => {
+  const { film } = maker();
+  document.body.replaceChildren(filmRow(film));
+  const lines = document.getElementById("film-lines") as HTMLSelectElement;
+  const heights: number[] = [];
+  afterAdd = () => void heights.push(opened.height);
+  for (const chosen of ["720", "360", "1080"]) {
+    if (chosen !== lines.value) lines.value = chosen;
+    lines.dispatchEvent(new Event("change"));
+    heights.length = 0;
+    await film.start();
+    expect(heights[0]).toBe(Number(chosen));
+  }
+});
+
 test("TheFocusFollowsFromTheButtonToStopAndToTheFile", async () => {
   const progress = new Signal<ExportProgress>({ kind: "idle" });
   const start = async () => undefined;
-  document.body.replaceChildren(filmRow({ progress, start, stop: () => progress.set({ kind: "idle" }) }));
+  const stop = () => progress.set({ kind: "idle" });
+  document.body.replaceChildren(filmRow({ progress, start, stop, lines: 720, choices: [720] }));
   const button = document.getElementById("film") as HTMLButtonElement;
   button.focus();
   progress.set({ kind: "recording", file: "", done: 0, secondsLeft: 1 });
-  const stop = document.activeElement;
-  expect(stop?.textContent).toBe("Stop");
+  const focused = document.activeElement;
+  expect(focused?.textContent).toBe("Stop");
   progress.set({ kind: "filming", file: "", done: 0.5 });
-  expect(document.activeElement).toBe(stop);
+  expect(document.activeElement).toBe(focused);
   progress.set({ kind: "ready", file: "a.webm", size: 1e6, url: "blob:a" });
   expect(document.activeElement?.id).toBe("film-link");
 });

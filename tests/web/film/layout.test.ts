@@ -1,22 +1,33 @@
 import { describe, expect, test } from "vitest";
-import { captionHeight, filmLayout, filmRate, filmTimes } from "../../../web/src/film/layout";
+import { animationSize, filmLayout, filmLines, filmRate, filmSize, filmTimes } from "../../../web/src/film/layout";
+
+const views = [
+  [1440, 900],
+  [883, 517],
+  [360, 401],
+  [3840, 600],
+  [1, 1],
+];
+const sizes = [...filmLines.map(filmSize), animationSize];
 
 describe("the layout of a film", () => {
-  test.each([
-    [1440, 900],
-    [883, 517],
-    [360, 401],
-    [3840, 600],
-    [1, 1],
-  ])("OfAViewOf%dx%dIsEvenAndKeepsTheShape", (width, height) => {
-    const film = filmLayout(width, height);
-    expect([film.width % 2, film.height % 2]).toEqual([0, 0]);
-    expect(film.width).toBeLessThanOrEqual(1280);
-    expect(film.height).toBeLessThanOrEqual(720);
-    expect(film.pictureHeight).toBe(film.height - captionHeight);
-    expect(Math.abs(film.width - width * film.scale)).toBeLessThan(2);
-    expect(Math.abs(film.pictureHeight - height * film.scale)).toBeLessThan(2);
-    expect(film.width > 1276 || film.height > 716).toBe(true);
+  test.each(views.flatMap(([width, height]) => sizes.map((most) => [width, height, most] as const)))(
+    "OfAViewOf%dx%dIsEvenAndKeepsTheShapeIn%o",
+    (width, height, most) => {
+      const film = filmLayout(width, height, most);
+      expect([film.width % 2, film.height % 2, film.pictureHeight % 2]).toEqual([0, 0, 0]);
+      expect(film.width).toBeLessThanOrEqual(most.width);
+      expect(film.height).toBeLessThanOrEqual(most.height);
+      expect(film.height - film.pictureHeight).toBeCloseTo(64 * film.captionScale, 9);
+      expect(Math.abs(film.width - width * film.scale)).toBeLessThan(2);
+      expect(Math.abs(film.pictureHeight - height * film.scale)).toBeLessThan(2);
+      expect(film.width > most.width - 4 || film.height > most.height - 4).toBe(true);
+    },
+  );
+
+  test("HasACaptionThatCanBeReadInEachSize", () => {
+    const scales = sizes.map((most) => filmLayout(883, 517, most).captionScale);
+    expect(scales).toEqual([0.75, 1, 1.5, 0.75]);
   });
 });
 

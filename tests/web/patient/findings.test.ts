@@ -2,9 +2,16 @@ import { create } from "@bufbuild/protobuf";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { afterEach, expect, test } from "vitest";
-import { FindingKind, ReadinessFindingSchema } from "../../../web/src/gen/phrenic/v1/patient_pb";
+import {
+  AssumptionKind,
+  AssumptionSchema,
+  FindingKind,
+  PatientReportSchema,
+  ReadinessFindingSchema,
+} from "../../../web/src/gen/phrenic/v1/patient_pb";
 import { InspectLabelsResponseSchema } from "../../../web/src/gen/phrenic/v1/patients_pb";
 import { useMessages } from "../../../web/src/language/translate";
+import { assumptionWords } from "../../../web/src/patient/assumption_words";
 import { findingWords } from "../../../web/src/patient/finding_words";
 import { LabelTable } from "../../../web/src/patient/label_table";
 
@@ -52,6 +59,44 @@ test("NumbersAndPartsAreThoseOfTheFinding", () => {
 
 test("AKindOfALaterServerHasItsSentence", () => {
   expect(findingWords(finding(99 as FindingKind))).toBe("the server's English sentence");
+});
+
+const assumption = (kind: AssumptionKind, parts: string[] = [], values: number[] = []) =>
+  create(AssumptionSchema, { kind, parts, values });
+
+const assumed = [
+  assumption(AssumptionKind.LUMBAR, [], [3, 33.2]),
+  assumption(AssumptionKind.CAGE_WIDTH),
+  assumption(AssumptionKind.NO_STERNUM),
+  assumption(AssumptionKind.RIBS_LEFT_OUT, ["left"]),
+  assumption(AssumptionKind.RIBS_DIVIDED, ["right"], [11]),
+  assumption(AssumptionKind.GAPS_CLOSED, ["rib-7-left"], [98, 4]),
+  assumption(AssumptionKind.MARGIN, [], [5]),
+  assumption(AssumptionKind.WALL, [], [41.2, 1.26, 3]),
+  assumption(AssumptionKind.TEMPLATE, ["rib-7-left", "heart"], [0.8, 0.91, 1, 4.2]),
+];
+
+test("EveryAssumptionHasWordsInEveryLanguage", () => {
+  const kinds = Object.values(AssumptionKind).filter((kind) => typeof kind === "number" && kind > 0);
+  expect(assumed.map(({ kind }) => kind)).toEqual(kinds);
+  const fallbacks = assumed.map(() => "the server's English sentence");
+  const report = create(PatientReportSchema, { fallbacks, assumptions: assumed });
+  const english = assumptionWords(report);
+  for (const words of english) expect(words).not.toMatch(/server's|undefined|NaN|\{/);
+  expect(english[7]).toContain("no bone in 41 % of the directions, bridged; bones are 1.3 mm");
+  for (const tag of ["de", "es"]) {
+    speak(tag);
+    for (const [i, words] of assumptionWords(report).entries()) {
+      expect(words, tag).not.toBe(english[i]);
+      expect(words, tag).not.toMatch(/undefined|NaN|\{|\bleft\b|\bthe\b/);
+    }
+  }
+});
+
+test("ARemarkAndAnAssumptionOfAnotherServerHaveTheirSentences", () => {
+  const fallbacks = ["a.nii: has no labelled voxel", "of a later server", "of an earlier server"];
+  const assumptions = [assumption(AssumptionKind.UNSPECIFIED), assumption(99 as AssumptionKind)];
+  expect(assumptionWords(create(PatientReportSchema, { fallbacks, assumptions }))).toEqual(fallbacks);
 });
 
 const tools = [

@@ -5,14 +5,36 @@ import { chooseSession, preferredSession } from "../../../web/src/session/choose
 import { FakeClock, settle } from "../fakes/fake_clock";
 import { FakeServer } from "../fakes/fake_server";
 
-const session = (id: string, state: SessionState) => create(SessionSchema, { id, state });
+/** A session; the newest has the largest `seconds`. */
+const session = (id: string, scene: string, state: SessionState, seconds = 0, others = {}) =>
+  create(SessionSchema, { id, scene, state, createTime: { seconds: BigInt(seconds) }, ...others });
 const plain = new URL("http://127.0.0.1:8080/");
+const { DIVERGED, PAUSED, PLAYING } = SessionState;
 
-test("TheFirstPlayingSessionIsPreferred", () => {
-  const [a, b] = [session("a", SessionState.PAUSED), session("b", SessionState.PLAYING)];
-  expect(preferredSession([a, b])).toBe(b);
-  expect(preferredSession([a])).toBe(a);
+test("ThePreferredSessionPlaysAThorax", () => {
+  const order = [
+    session("watched", "thorax", PLAYING, 1, { viewers: 3 }),
+    session("scoliosis", "thorax-scoliosis", PLAYING, 9),
+    session("person", "person-1", PLAYING, 8),
+    session("patient", "anna", PLAYING, 7, { sceneTitle: "Thorax of anna, from a label volume" }),
+    session("a-cube", "cube-springs", PLAYING, 9),
+    session("rests", "thorax", PAUSED, 2),
+    session("rests-longer", "thorax", PAUSED, 1),
+    session("another-cube", "cube-springs", PAUSED, 9, { viewers: 1 }),
+    session("burst", "thorax", DIVERGED, 9),
+    session("copy", "thorax", PLAYING, 9, { temporary: true, viewers: 9 }),
+  ];
+  for (let i = 0; i < order.length; i++) {
+    const left = order.slice(i);
+    expect(preferredSession(left)?.id).toBe(order[i].id);
+    expect(preferredSession(left.toReversed())?.id).toBe(order[i].id);
+  }
   expect(preferredSession([])).toBeUndefined();
+});
+
+test("TheFirstOfEqualSessionsIsPreferred", () => {
+  const equal = ["a", "b"].map((id) => session(id, "thorax", PLAYING));
+  expect(preferredSession(equal)?.id).toBe("a");
 });
 
 test("TheSessionInTheAddressIsUsed", async () => {

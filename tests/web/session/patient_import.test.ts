@@ -121,6 +121,28 @@ test("FilesAreKnownByTheirContent", async () => {
   expect([found.images, found.others]).toEqual([1, 2]);
 });
 
+test("ArchivesThatAreNotReadAreNamed", async () => {
+  const bytes = (...numbers: number[]) => new Uint8Array(numbers);
+  const files = [
+    new File([bytes(0x1f, 0x8b, 8, 0)], "a.tgz"),
+    new File([bytes(0x37, 0x7a, 0xbc, 0xaf, 0x27, 0x1c)], "b.7z"),
+    new File([bytes(0x52, 0x61, 0x72, 0x21, 0x1a, 0x07)], "c.rar"),
+    new File([bytes(0xfd, 0x37, 0x7a, 0x58, 0x5a, 0)], "d.tar.xz"),
+    new File([bytes(0x28, 0xb5, 0x2f, 0xfd)], "e.tar.zst"),
+    new File(["BZh9"], "f.nii.bz2"),
+    new File([bytes(0x1f, 0x8b, 8, 0)], "notes.txt.gz"),
+  ];
+  const found = await findVolumes(files);
+  expect(found.unread.map(({ name }) => name)).toEqual(files.slice(0, 6).map(({ name }) => name));
+  expect([found.volumes.length, found.others]).toEqual([0, 7]);
+  // A segmentation beside one is not sent without a word.
+  const { api, asked } = fakeServer(ReadinessVerdict.READY);
+  const importing = new PatientImport(api, () => undefined);
+  await importing.take([segmentation, files[1]]);
+  expect(importing.state.value).toMatchObject({ kind: "choosing", found: { unread: [{ name: "b.7z" }] } });
+  expect(asked).toEqual([]);
+});
+
 test("FoldersAreReadToTheirLastEntry", async () => {
   const entry = (name: string) => ({ isFile: true, file: (done: (file: File) => void) => done(new File([], name)) });
   const folder = (entries: object[]) => {

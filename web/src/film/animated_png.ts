@@ -1,8 +1,5 @@
 import { type Chunk, numbersChunk, readChunks, writeChunks } from "./png_chunks";
 
-/** Longest side of the animation [pixels]: it is for pages and messages, where a film does not play. */
-const maxLength = 480;
-
 /**
  * Writes pictures of one canvas to an animated PNG that repeats for ever (PNG specification, third edition, W3C 2025).
  * The browser compresses each picture; its data become a frame of the file.
@@ -12,26 +9,17 @@ export class AnimatedPngWriter {
   private header: Chunk | undefined;
 
   private constructor(
-    private readonly source: HTMLCanvasElement,
-    private readonly rate: number,
     private readonly canvas: HTMLCanvasElement,
-    private readonly pen: CanvasRenderingContext2D,
+    private readonly rate: number,
   ) {}
 
-  /** Returns a writer of animations of the canvas with `rate` pictures per second. Throws Error without memory. */
-  static open(source: HTMLCanvasElement, rate: number): AnimatedPngWriter {
-    const scale = Math.min(1, maxLength / Math.max(source.width, source.height));
-    const [width, height] = [source.width, source.height].map((length) => Math.round(length * scale));
-    const canvas = Object.assign(document.createElement("canvas"), { width, height });
-    const pen = canvas.getContext("2d", { alpha: false });
-    if (pen === null) throw new Error("the browser has no memory for a picture");
-    pen.imageSmoothingQuality = "high";
-    return new AnimatedPngWriter(source, rate, canvas, pen);
+  /** Returns a writer of animations of the canvas with `rate` pictures per second. */
+  static open(canvas: HTMLCanvasElement, rate: number): AnimatedPngWriter {
+    return new AnimatedPngWriter(canvas, rate);
   }
 
   /** Adds the canvas' picture as the next frame. Resolves when the page may draw the next. */
   async add(): Promise<void> {
-    this.pen.drawImage(this.source, 0, 0, this.canvas.width, this.canvas.height);
     const picture = await new Promise<Blob | null>((done) => this.canvas.toBlob(done, "image/png"));
     if (picture === null) throw new Error("the browser has no memory for a picture");
     const chunks = readChunks(new Uint8Array(await picture.arrayBuffer()));

@@ -1,5 +1,5 @@
 import type { ColorScale } from "../appearance/color_scale";
-import { captionHeight } from "./layout";
+import { captionHeight, type FilmLayout } from "./layout";
 import { decimal, fixed, t } from "../language/translate";
 
 /** What the caption of a film says. */
@@ -16,28 +16,32 @@ const margin = 16;
 const barWidth = 160;
 const gap = 10;
 
-/** Draws the caption for `time` [s] into the lowest part of a film of this size. */
-export function drawCaption(
-  pen: CanvasRenderingContext2D,
-  { title, colors }: Caption,
-  time: number,
-  { width, height }: { width: number; height: number },
-): void {
-  const top = height - captionHeight;
+/** Draws the caption for `time` [s] into the lowest part of a film of this layout. */
+export function drawCaption(pen: CanvasRenderingContext2D, caption: Caption, time: number, layout: FilmLayout): void {
+  const scale = layout.captionScale;
+  pen.save();
+  pen.translate(0, layout.pictureHeight);
+  pen.scale(scale, scale);
+  drawWords(pen, caption, time, layout.width / scale);
+  pen.restore();
+}
+
+/** Draws the caption at the place and in the scale of a film of 720 lines that has this width. */
+function drawWords(pen: CanvasRenderingContext2D, { title, colors }: Caption, time: number, width: number): void {
   pen.fillStyle = "#11161b";
-  pen.fillRect(0, top, width, captionHeight);
+  pen.fillRect(0, 0, width, captionHeight);
   pen.fillStyle = "#f1f4f7";
   pen.textBaseline = "middle";
   const clock = Math.min(90, width / 4);
-  write(pen, title, margin, top + 21, { font: `600 19px ${family}`, room: width - 2 * margin - clock });
-  write(pen, `${fixed(time, 2)} s`, width - margin, top + 21, {
+  write(pen, title, margin, 21, { font: `600 19px ${family}`, room: width - 2 * margin - clock });
+  write(pen, `${fixed(time, 2)} s`, width - margin, 21, {
     font: `600 19px ${family}`,
     room: clock,
     right: true,
   });
   const half = (width - 2 * margin) / 2;
-  write(pen, t(disclaimer), width - margin, top + 46, { font: `13px ${family}`, room: half - gap, right: true });
-  if (colors !== undefined) drawScale(pen, colors, top + 46, half);
+  write(pen, t(disclaimer), width - margin, 46, { font: `13px ${family}`, room: half - gap, right: true });
+  if (colors !== undefined) drawScale(pen, colors, 46, half);
 }
 
 function drawScale(

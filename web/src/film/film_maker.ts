@@ -3,7 +3,16 @@ import type { OfflineMotion } from "../gen/phrenic/v1/offline_pb";
 import { motionTitle } from "../parameters/presets";
 import type { ExportProgress } from "../session/exports";
 import { Signal } from "../state/signal";
-import { animationRate, filmRate, filmTimes } from "./layout";
+import {
+  animationRate,
+  animationSize,
+  filmLines,
+  filmRate,
+  filmSize,
+  type FilmSize,
+  filmTimes,
+  usualLines,
+} from "./layout";
 import { type FilmStage, Pictures } from "./pictures";
 import { t } from "../language/translate";
 
@@ -28,6 +37,13 @@ export interface MotionSource {
   stop(): void;
 }
 
+/** Ending of the file, pictures per second, and the largest size, if the user does not choose it. */
+interface Format {
+  extension: string;
+  rate: number;
+  size?: FilmSize;
+}
+
 /** The stages that draw a film now. */
 const busy = new WeakSet<FilmStage>();
 
@@ -37,6 +53,9 @@ const busy = new WeakSet<FilmStage>();
  */
 export class FilmMaker {
   readonly progress = new Signal<ExportProgress>({ kind: "idle" });
+  /** Lines of pixels of the next film, and those that a user may choose; animated pictures have a fixed size. */
+  lines = usualLines;
+  readonly choices = filmLines;
   private running = new AbortController();
 
   constructor(
@@ -44,7 +63,7 @@ export class FilmMaker {
     private readonly stage: FilmStage,
     private readonly open: OpenWriter,
     private readonly supported: () => boolean = () => typeof VideoEncoder !== "undefined",
-    private readonly format = { extension: "webm", rate: filmRate },
+    private readonly format: Format = { extension: "webm", rate: filmRate },
   ) {
     source.progress.subscribe((work) => {
       if (["recording", "fetching", "failed"].includes(work.kind)) this.progress.set(work);
@@ -53,7 +72,8 @@ export class FilmMaker {
 
   /** Returns a maker of animated pictures (PNG), which every browser can make. */
   static ofAnimations(source: MotionSource, stage: FilmStage, open: OpenWriter): FilmMaker {
-    return new FilmMaker(source, stage, open, () => true, { extension: "png", rate: animationRate });
+    const format = { extension: "png", rate: animationRate, size: animationSize };
+    return new FilmMaker(source, stage, open, () => true, format);
   }
 
   /** Records and films a breath; cancels a film that is being made and releases the one before. */
@@ -97,7 +117,8 @@ export class FilmMaker {
     const clip = new Clip(await this.source.decoder(), motion.frames, motion.bodies);
     const { scene, preset } = motionTitle(motion);
     const title = preset === "" ? scene : `${scene} · ${preset}`;
-    const pictures = new Pictures(this.stage, { title, colors: this.stage.colors() });
+    const size = this.format.size ?? filmSize(this.lines);
+    const pictures = new Pictures(this.stage, { title, colors: this.stage.colors() }, size);
     const writer = await this.open(pictures.canvas, this.format.rate);
     pictures.begin();
     busy.add(this.stage);

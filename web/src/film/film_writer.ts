@@ -1,12 +1,12 @@
 import { ArrayBufferTarget, Muxer } from "webm-muxer";
 
-/** Encoded bits per second, frames from one key frame to the next, and frames that wait for the encoder at most. */
-const bitrate = 4_000_000;
+/** Encoded bits per second of 1280 x 720 pixels, frames from one key frame to the next, and frames that wait for the encoder at most. */
+const usualBitrate = 4_000_000;
 const keyInterval = 50;
 const maxQueue = 4;
 /** Codecs of WebM for the encoder and for the file, the better one first. */
 const codecs = [
-  { codec: "vp09.00.31.08", name: "V_VP9" },
+  { codec: "vp09.00.40.08", name: "V_VP9" },
   { codec: "vp8", name: "V_VP8" },
 ];
 
@@ -31,6 +31,7 @@ export class FilmWriter {
    */
   static async open(canvas: HTMLCanvasElement, rate: number): Promise<FilmWriter> {
     const { width, height } = canvas;
+    const bitrate = Math.round((usualBitrate * Math.max(width * height, 640 * 360)) / (1280 * 720));
     for (const { codec, name } of codecs) {
       const config: VideoEncoderConfig = { codec, width, height, bitrate, framerate: rate };
       const answer = await VideoEncoder.isConfigSupported(config).catch(() => undefined);

@@ -1,6 +1,6 @@
 import type { DisplayedFrame } from "../frames/frame_buffer";
 import { type Caption, drawCaption } from "./caption";
-import { type FilmLayout, filmLayout } from "./layout";
+import { type FilmLayout, filmLayout, type FilmSize } from "./layout";
 
 /** A rectangle [CSS pixels]. */
 export interface Area {
@@ -31,7 +31,7 @@ export interface FilmStage {
 const oversampling = 1.5;
 const maxRatio = 3;
 
-/** Draws the pictures of a film, of the stage as it is now, into one canvas. */
+/** Draws the pictures of a film, of the stage as it is now and at most as large as `most`, into one canvas. */
 export class Pictures {
   readonly canvas: HTMLCanvasElement;
   private readonly area: Area;
@@ -43,9 +43,10 @@ export class Pictures {
   constructor(
     private readonly stage: FilmStage,
     private readonly caption: Caption,
+    most: FilmSize,
   ) {
     this.area = stage.area();
-    this.layout = filmLayout(this.area.width, this.area.height);
+    this.layout = filmLayout(this.area.width, this.area.height, most);
     this.ratio = Math.min(oversampling * this.layout.scale, maxRatio);
     const { width, height } = this.layout;
     this.canvas = Object.assign(document.createElement("canvas"), { width, height });

@@ -139,6 +139,7 @@ export class MotionPage {
       t("A film of this breath"),
       false,
       detail,
+      film.lines,
       film.go,
       film.progress,
       make("p", { className: "faint" }, pictures),

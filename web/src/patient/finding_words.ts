@@ -13,20 +13,30 @@ const words: Partial<Record<FindingKind, Words>> = {
       fixed(area, 0),
     ),
   [FindingKind.RIBS_CUT]: ({ parts }) =>
-    t("The border of the scan cuts {0}: their motion is that of the part that is left.", names(parts)),
+    t(
+      "The border of the scan cuts {0}: their motion is that of the part that is left. Use a scan that has whole ribs.",
+      names(parts),
+    ),
   [FindingKind.RIBS_MISSING]: ({ parts }) =>
-    t("Missing: {0}. The wall, the costal margin and the axes of the cage are guessed there.", names(parts)),
+    t(
+      "Missing: {0}. The wall, the costal margin and the axes of the cage are guessed there. Label them, or use a scan that shows them.",
+      names(parts),
+    ),
   [FindingKind.FILLED]: ({ parts, values: [off, share] }) =>
     t(
-      "Not seen, but filled from the generated thorax, which fits what is seen to {0} mm: {1}. Their shape is not the person's, and {2} % of the diaphragm rests on them.",
+      "Not seen, but filled from the generated thorax, which fits what is seen to {0} mm: {1}. Their shape is not the person's, and {2} % of the diaphragm rests on them. Label them if the scan shows them.",
       fixed(off, 1),
       names(parts),
       fixed(100 * share, 0),
     ),
   [FindingKind.ORGANS_MISSING]: ({ parts }) =>
-    t("No label for {0}: the domes are guessed from the lungs alone there.", names(parts)),
+    t("No label for {0}: the domes are guessed from the lungs alone there. Label them.", names(parts)),
   [FindingKind.EXTRAPOLATED]: ({ parts, values: [share] }) =>
-    t("{0} % of the diaphragm is extrapolated, not seen: {1}", fixed(100 * share, 0), parts.map(sectorName).join("; ")),
+    t(
+      "{0} % of the diaphragm is extrapolated, not seen: {1}. Label the organs and ribs beside it, or the diaphragm itself.",
+      fixed(100 * share, 0),
+      parts.map(sectorName).join("; "),
+    ),
   [FindingKind.ODD_AXES]: ({ parts, values }) =>
     t(
       "Axes of ribs are at angles to the midsagittal plane that no person has: {0}. These ribs would move inwards or not at all. Check that their necks are in the scan and labelled.",
@@ -38,9 +48,15 @@ const words: Partial<Record<FindingKind, Words>> = {
       fixed(height, 0),
     ),
   [FindingKind.CROSSED]: ({ values: [places] }) =>
-    t("The diaphragm crosses itself at rest in {0} places: it is crumpled.", places),
+    t(
+      "The diaphragm crosses itself at rest in {0} places: it is crumpled. Check that the labels of lungs and organs do not overlap or leave gaps.",
+      places,
+    ),
   [FindingKind.ODD_AREA]: ({ values: [area] }) =>
-    t("The diaphragm has {0} cm²; adults have 700 to 1300 cm².", fixed(area, 0)),
+    t(
+      "The diaphragm has {0} cm²; adults have 700 to 1300 cm². Check the voxels' spacing, and that the scan shows the whole thorax of an adult.",
+      fixed(area, 0),
+    ),
 };
 
 const sides: Record<string, string> = {

@@ -3,6 +3,7 @@ import { make } from "../dom/elements";
 import { alertMessage } from "../dom/rows";
 import { type PatientReport, ReadinessVerdict } from "../gen/phrenic/v1/patient_pb";
 import { fixed, t } from "../language/translate";
+import { assumptionWords } from "./assumption_words";
 import { findingWords, partName } from "./finding_words";
 import { LabelTable } from "./label_table";
 import { type Dropped, droppedFiles, type FoundFiles } from "./patient_files";
@@ -85,15 +86,25 @@ export class PatientDialog {
     ];
   }
 
-  private choices({ volumes, images, others }: FoundFiles): HTMLElement[] {
+  private choices({ volumes, unread, images, others }: FoundFiles): HTMLElement[] {
     const counts = t(
       "{0} segmentations, {1} other DICOM files, {2} other files; only what you choose is sent.",
       volumes.length,
       images,
       others,
     );
-    if (volumes.length === 0)
-      return [alertMessage(t("There is no segmentation among the files.")), make("p", { className: "faint" }, counts)];
+    const archives = unread.map(({ name }) =>
+      alertMessage(
+        t(
+          "{0}: archives of this format are not read. Unpack it and choose the files or their folder, or pack them as .zip or .tar.",
+          name,
+        ),
+      ),
+    );
+    if (volumes.length === 0) {
+      const nothing = archives.length > 0 ? archives : [alertMessage(t("There is no segmentation among the files."))];
+      return [...nothing, make("p", { className: "faint" }, counts)];
+    }
     const all = make("button", { type: "button", id: "patient-all", className: "primary" });
     all.textContent = t("Open all {0} as one patient", volumes.length);
     all.title = t("Programs such as TotalSegmentator, MOOSE and CADS write a file for each structure or model");
@@ -105,6 +116,7 @@ export class PatientDialog {
       return make("li", {}, words, read);
     });
     return [
+      ...archives,
       make("p", { className: "faint" }, counts),
       make("div", { className: "acts" }, all),
       make("ul", { className: "label-rows" }, ...rows),
@@ -161,7 +173,7 @@ export class PatientDialog {
   }
 
   private verdict(state: { kind: "made" | "refused"; report: PatientReport }): HTMLElement[] {
-    const { readiness, fallbacks, diaphragm } = state.report;
+    const { readiness, diaphragm } = state.report;
     const verdict = readiness?.verdict ?? ReadinessVerdict.UNSPECIFIED;
     const heading = make("p", { id: "patient-verdict" }, make("b", {}, t(verdicts[verdict] ?? "")));
     heading.dataset.verdict = ReadinessVerdict[verdict];
@@ -171,8 +183,9 @@ export class PatientDialog {
       const shares = [diaphragm.areaCm2, 100 * diaphragm.extrapolated].map((value) => fixed(value, 0));
       parts.push(make("p", { className: "faint" }, t("Diaphragm: {0} cm², {1} % of it extrapolated.", ...shares)));
     }
-    if (fallbacks.length > 0) {
-      const items = fallbacks.map((words) => make("li", {}, words));
+    const assumed = assumptionWords(state.report);
+    if (assumed.length > 0) {
+      const items = assumed.map((words) => make("li", {}, words));
       parts.push(make("details", {}, make("summary", {}, t("What was assumed")), make("ul", {}, ...items)));
     }
     return [

@@ -8,13 +8,15 @@ export interface Dropped {
 export interface FoundFiles {
   /** Files that may hold labels: DICOM Segmentations, RT Structure Sets, NIfTI files, and archives of them. */
   volumes: File[];
+  /** Archives and compressed files that are not read, at most ten: they must be unpacked. */
+  unread: File[];
   /** Number of other DICOM files, such as the slices of a CT, which are not needed and not sent. */
   images: number;
   /** Number of all other files. */
   others: number;
 }
 
-type FileKind = "volume" | "image" | "other";
+type FileKind = "volume" | "unread" | "image" | "other";
 
 /** SOP classes of Segmentation, Label Map Segmentation and RT Structure Set (DICOM PS3.4, B.5). */
 const labelClasses = /1\.2\.840\.10008\.5\.1\.4\.1\.1\.(66\.4|66\.7|481\.3)\0/;
@@ -22,15 +24,21 @@ const labelClasses = /1\.2\.840\.10008\.5\.1\.4\.1\.1\.(66\.4|66\.7|481\.3)\0/;
 const headBytes = 2048;
 /** Files of a folder that are looked at. */
 const mostFiles = 20_000;
+const mostUnread = 10;
+/** First bytes of 7-Zip, RAR, xz, bzip2 and Zstandard. */
+const unreadMarks = /^(7z\xbc\xaf\x27\x1c|Rar!\x1a\x07|\xfd7zXZ|BZh|\x28\xb5\x2f\xfd)/;
 
 /** Returns what the files are, by their first bytes. */
 export async function findVolumes(files: File[]): Promise<FoundFiles> {
-  const found: FoundFiles = { volumes: [], images: 0, others: 0 };
+  const found: FoundFiles = { volumes: [], unread: [], images: 0, others: 0 };
   for (const file of files) {
     const kind = await kindOf(file);
     if (kind === "volume") found.volumes.push(file);
     else if (kind === "image") found.images++;
-    else found.others++;
+    else {
+      found.others++;
+      if (kind === "unread" && found.unread.length < mostUnread) found.unread.push(file);
+    }
   }
   return found;
 }
@@ -43,7 +51,8 @@ async function kindOf(file: File): Promise<FileKind> {
   const isGzip = head[0] === 0x1f && head[1] === 0x8b;
   const isNifti = /^(n\+1|ni1|n\+2)/.test(text.slice(344)) || /^n\+2/.test(text.slice(4));
   const isArchive = text.startsWith("PK\x03\x04") || text.slice(257, 262) === "ustar";
-  return isNifti || isArchive || (isGzip && /\.nii\.gz$/i.test(file.name)) ? "volume" : "other";
+  if (isNifti || isArchive || (isGzip && /\.nii\.gz$/i.test(file.name))) return "volume";
+  return unreadMarks.test(text) || (isGzip && /\.(tar\.gz|tgz)$/i.test(file.name)) ? "unread" : "other";
 }
 
 /** Returns the files of what was dropped, also those in folders. */

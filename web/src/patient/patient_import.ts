@@ -45,7 +45,7 @@ export class PatientImport {
   async take(files: File[]): Promise<void> {
     await this.end();
     const found = await findVolumes(files);
-    if (found.volumes.length === 1) return this.read(found.volumes);
+    if (found.volumes.length === 1 && found.unread.length === 0) return this.read(found.volumes);
     this.state.set({ kind: "choosing", found });
   }
 

@@ -1,4 +1,5 @@
 import { make } from "../../dom/elements";
+import { labelledRow } from "../../dom/rows";
 import type { Exports } from "../../session/exports";
 import { exportProgress, type FileMaking } from "./export_progress";
 import { t } from "../../language/translate";
@@ -21,14 +22,16 @@ export function takeHomeRow(exports: Exports): HTMLElement {
 }
 
 type Filming = FileMaking & { start(): Promise<void> };
+/** A film whose lines of pixels are among `choices`. */
+type FilmOfLines = Filming & { lines: number; readonly choices: number[] };
 
 /** Returns a row with a button that films the next breath, as a WebM file. */
-export function filmRow(film: Filming): HTMLElement {
-  const { go, progress } = filmButton(film);
+export function filmRow(film: FilmOfLines): HTMLElement {
+  const { go, lines, progress } = filmButton(film);
   const detail = t(
     "A WebM video of the next breath as the view shows it, for slides: 25 pictures per simulated second.",
   );
-  return fileRow(t(filmTitle), detail, go, progress);
+  return fileRow(t(filmTitle), detail, go, lines, progress);
 }
 
 /** Returns a row with a button that makes an animated picture of the next breath, as a PNG file. */
@@ -43,9 +46,14 @@ export function animationRow(film: Filming): HTMLElement {
 const filmTitle = "A film of this breath";
 const animationTitle = "An animated picture of this breath";
 
-/** Returns a button that makes and saves a film, and its progress. */
-export function filmButton(film: Filming): { go: HTMLElement; progress: HTMLElement } {
-  return makingButton(film, "film", t(filmTitle));
+/** Returns a button that makes and saves a film, the choice of its size, and its progress. */
+export function filmButton(film: FilmOfLines): { go: HTMLElement; lines: HTMLElement; progress: HTMLElement } {
+  const select = make("select", { id: "film-lines" });
+  select.append(...film.choices.map((lines) => make("option", { value: String(lines) }, String(lines))));
+  select.value = String(film.lines);
+  select.onchange = () => (film.lines = Number(select.value));
+  const lines = labelledRow(select.id, t("Height [pixels]"), select);
+  return { ...makingButton(film, "film", t(filmTitle)), lines };
 }
 
 /** Returns a button that makes and saves an animated picture, and its progress. */
@@ -63,6 +71,6 @@ function makingButton(film: Filming, id: string, title: string): { go: HTMLEleme
   return { go, progress };
 }
 
-function fileRow(title: string, detail: string, go: HTMLElement, progress: HTMLElement): HTMLElement {
-  return make("li", {}, make("div", {}, make("b", {}, title), make("span", {}, detail), progress), go);
+function fileRow(title: string, detail: string, go: HTMLElement, ...below: HTMLElement[]): HTMLElement {
+  return make("li", {}, make("div", {}, make("b", {}, title), make("span", {}, detail), ...below), go);
 }
