@@ -11,6 +11,7 @@
 namespace phrenic {
 
 class ChamberReadings;
+struct Displacement;
 struct PoseMatrices;
 
 // The input of every force, motion and measure. Refers to the caller's state: valid during the call only. n is the
@@ -32,6 +33,7 @@ struct EvalContext {
   // Results that several elements share at this moment; null if not available.
   ChamberReadings* readings = nullptr;          // of chambers read so far (breathing/chamber.h)
   const PoseMatrices* pose_matrices = nullptr;  // one per pose (skinning/pose_matrices.h)
+  const Displacement* displacements = nullptr;  // one per simulated vertex (skinning/displacements.h)
 };
 
 }  // namespace phrenic

@@ -25,6 +25,22 @@ struct SkinWeight {
   double weight = 0;          // between 0 and 1
 };
 
+// The weights of a body as frames read them: vertex after vertex, its poses before its simulated vertices.
+struct SkinWeights {
+  // The drivers of a vertex: so many from `first` on.
+  struct Row {
+    int vertex = 0, first = 0, poses = 0, simulated = 0;
+  };
+  std::vector<Row> rows;        // of the vertices with weights, in ascending order
+  std::vector<int> drivers;     // indices into State::poses, or simulated vertices
+  std::vector<double> weights;  // one per driver
+  bool follow_simulated = false;
+
+  SkinWeights() = default;
+  // Keeps the order of a vertex' poses and that of its simulated vertices. Requires: they are sorted by vertex.
+  explicit SkinWeights(const std::vector<SkinWeight>& sorted);
+};
+
 // The position of a vertex relative to a triangle of simulated vertices: x = sum_i weights_i x_i + height n, n the unit
 // normal (thesis 6.1.3); on a sheet the smooth one, with a height that changes (skinning/sheet_points.h).
 struct TriangleBinding {
@@ -54,7 +70,7 @@ class SkinCorrection {
 // The skin of one seen body: weights or bindings.
 struct Skin {
   int body = 0;
-  std::vector<SkinWeight> weights;           // sorted by vertex; or ...
+  SkinWeights weights;                       // or ...
   std::vector<TriangleBinding> triangles;    // ... one per vertex of the body
   std::shared_ptr<const DriverSheet> sheet;  // if not null, `triangles` are bound to this sheet
   std::vector<std::shared_ptr<const SkinCorrection>> corrections = {};  // of what the weights give, in this order

@@ -63,7 +63,9 @@ void Encoder::LookForBasis(absl::Time made) {
 
 void Encoder::SetPositions(const FrameEncoding& encoding, v1::Frame& frame) {
   const std::vector<int>& bodies = encoding.chosen ? encoding.bodies : streamed_;
-  const Floats positions = Pick(*model_, layout_, bodies, positions_);
+  const bool all = bodies == streamed_;
+  const Floats picked = all ? Floats() : Pick(*model_, layout_, bodies, positions_);
+  const Floats& positions = all ? positions_ : picked;
   const bool put_together = encoding.codec == v1::CODEC_BASIS && FindBasis(encoding.basis_epoch) != nullptr;
   const v1::Codec codec = encoding.codec == v1::CODEC_BASIS && !put_together ? v1::CODEC_PREDICTED : encoding.codec;
   const std::int64_t epoch = put_together ? encoding.basis_epoch : 0;

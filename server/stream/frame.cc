@@ -1,13 +1,16 @@
 #include "server/stream/frame.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/measures/readings.h"
 #include "server/mechanics/skinning/body_points.h"
+#include "server/mechanics/skinning/displacements.h"
 #include "server/mechanics/skinning/pose_matrices.h"
 #include "server/mechanics/skinning/probe_position.h"
 #include "server/stream/codecs/wire.h"
+#include "server/stream/float_kernel.h"
 
 namespace phrenic::stream {
 namespace {
@@ -16,20 +19,30 @@ absl::Status NotFinite(const std::string& what, const State& state) {
   return absl::InternalError(absl::StrCat(what, " is not finite at tick ", state.tick, ": the frame is not sent"));
 }
 
+// Returns false if one is not finite.
+bool AppendAsFloats(const ConstPoints& points, std::string& bytes) {
+  constexpr Eigen::Index kTogether = 3072;  // stay in the L1 cache
+  float floats[kTogether];
+  bool finite = true;
+  for (Eigen::Index first = 0; first < points.size(); first += kTogether) {
+    const auto count = static_cast<std::size_t>(std::min(kTogether, points.size() - first));
+    finite = ToFloats(points.data() + first, count, floats) && finite;
+    bytes.append(reinterpret_cast<const char*>(floats), sizeof(float) * count);
+  }
+  return finite;
+}
+
 absl::Status AppendPositions(const Model& model, const Layout& layout, const State& state, const Scratch& scratch,
                              std::string& bytes) {
   bytes.reserve(sizeof(float) * 3 * layout.vertices());
   EvalContext at = MakeEvalContext(model, model.parameters, state, scratch);
   at.pose_matrices = PoseMatricesOf(at).data();
-  Points placed;
-  Eigen::MatrixXf floats;
+  at.displacements = DisplacementsOf(at, model.rest.data());
   for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
     if (layout.placement(i) != v1::PLACEMENT_STREAMED) continue;
-    placed.resize(3, model.bodies[i].mesh.vertices.cols());
-    BodyPoints(model, i).Place(at, placed);
-    floats = placed.cast<float>();
-    if (!floats.allFinite()) return NotFinite(absl::StrCat("a vertex of ", model.bodies[i].name), state);
-    AppendFloats(floats, bytes);
+    if (!AppendAsFloats(BodyPoints(model, i).Positions(at), bytes)) {
+      return NotFinite(absl::StrCat("a vertex of ", model.bodies[i].name), state);
+    }
   }
   return absl::OkStatus();
 }

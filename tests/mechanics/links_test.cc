@@ -203,6 +203,51 @@ TEST(LinkPackets, AreRestoredAsLinkByLinkOnEveryInstructionSet) {
   }
 }
 
+// Limits of length: some hold already, and one link has turned.
+TEST(LinkKernel, RestoresEndsThatAreApartAsItDoesTheOthers) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> value(-1, 1);
+  const int n = 40;
+  const auto points = [&](double size) {
+    return Points(Points::NullaryExpr(3, n, [&] { return size * value(random); }));
+  };
+  const Points before = points(0.1), v = points(1);
+  Points x = before + points(0.02);
+  x.col(6).swap(x.col(7));
+  std::vector<Link> links;
+  for (int i = 0; i + 1 < n; i += 2) {
+    const double length = (before.col(i + 1) - before.col(i)).norm();
+    links.push_back(
+        {.a = i, .b = i + 1, .length = length, .inverse_a = 1.5 + value(random), .inverse_b = 2, .sign = 1});
+  }
+  const std::vector<LinkPacket> packets = PackLinks(links, 0, false), apart = PackSweptLinks(links, 0);
+  ASSERT_EQ(apart.size(), packets.size());
+  Points first_x;
+  OnEveryTarget([&] {
+    Points here_x = x, here_v = v;
+    std::vector<SweptEnd> ends(n);
+    LinkVectors directions[3], of_ends[3];
+    const auto fetch = [&](const Points& from) {
+      for (int i = 0; i < n; ++i) {
+        Eigen::Vector3d::Map(ends[i].x) = from.col(i), Eigen::Vector3d::Map(ends[i].v) = v.col(i);
+      }
+    };
+    FindDirections(packets, before.data(), directions);
+    fetch(before);
+    FindDirections(apart, ends.data(), of_ends);
+    fetch(x);
+    const Restored restored = RestorePackets(packets, directions, 0.01, here_x.data(), here_v.data());
+    EXPECT_EQ(RestorePackets(apart, of_ends, 0.01, ends.data()), restored.missed);
+    EXPECT_NE(here_x, x);
+    for (int i = 0; i < n; ++i) {
+      EXPECT_EQ(Eigen::Vector3d::Map(ends[i].x), here_x.col(i)) << i;
+      EXPECT_EQ(Eigen::Vector3d::Map(ends[i].v), here_v.col(i)) << i;
+    }
+    if (first_x.size() == 0) first_x = here_x;
+    EXPECT_EQ(here_x, first_x);
+  });
+}
+
 TEST(SparseLdlt, SolvesWhatADenseSolverDoesAndLeavesRedundantRowsOut) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> value(-1, 1);

@@ -42,6 +42,10 @@ struct WallCell {
   int low_left, low_right, high_left, high_right;
   double u, v;  // fractions to the right and upwards
   bool inside;  // not beyond the table's lower or upper border
+
+  double Mean(const std::vector<double>& of) const {
+    return (1 - v) * ((1 - u) * of[low_left] + u * of[low_right]) + v * ((1 - u) * of[high_left] + u * of[high_right]);
+  }
 };
 
 WallCell WallCellAt(double turn, double height) {
@@ -118,7 +122,7 @@ void InnerWall::Tabulate() {
 bool InnerWall::IsFarInside(const WallTable& table, const Eigen::Vector3d& point, double margin) const {
   const double row = WithinRows((point.z() - bottom_) / height_ * (kHeights - 1));
   const int below = std::min(static_cast<int>(row), kHeights - 2);
-  const double bound = std::min(table.least[below], table.least[below + 1]) - margin;
+  const double bound = table.least[below] - margin;
   const double front = grid_.axis_y() - point.y();
   return bound > 0 && point.x() * point.x() + front * front < bound * bound;
 }
@@ -128,20 +132,22 @@ WallGap InnerWall::Gap(const WallTable& table, const Eigen::Vector3d& point) con
   const WallTurn turn = WallTurnOf(x, front);
   const WallCell cell = WallCellAt(turn.value, (point.z() - bottom_) / height_);
   const double u = cell.u, v = cell.v;
-  const auto mean = [&](const std::vector<double>& of) {
-    return (1 - v) * ((1 - u) * of[cell.low_left] + u * of[cell.low_right]) +
-           v * ((1 - u) * of[cell.high_left] + u * of[cell.high_right]);
-  };
   const std::vector<double>& r = table.radius;
   const double low = r[cell.low_right] - r[cell.low_left], high = r[cell.high_right] - r[cell.high_left];
   const double left = r[cell.high_left] - r[cell.low_left], right = r[cell.high_right] - r[cell.low_right];
   const double by_turn = ((1 - v) * low + v * high) * kQuarter;
   const double by_z = cell.inside ? ((1 - u) * left + u * right) * (kHeights - 1) / height_ : 0;
   const double radius = std::max(std::sqrt(x * x + front * front), kLeastRadius);
-  return {.gap = radius - mean(r),
+  return {.gap = radius - cell.Mean(r),
           .gradient = {x / radius - by_turn * turn.by_x, -front / radius - by_turn * turn.by_y, -by_z},
-          .by_pump = -mean(table.by_pump),
-          .by_bucket = -mean(table.by_bucket)};
+          .by_pump = -cell.Mean(table.by_pump),
+          .by_bucket = -cell.Mean(table.by_bucket)};
+}
+
+double InnerWall::GapAlone(const WallTable& table, const Eigen::Vector3d& point) const {
+  const double x = point.x(), front = grid_.axis_y() - point.y();
+  const WallCell cell = WallCellAt(WallTurnOf(x, front).value, (point.z() - bottom_) / height_);
+  return std::max(std::sqrt(x * x + front * front), kLeastRadius) - cell.Mean(table.radius);
 }
 
 InnerWall::Follower InnerWall::Follow(const Eigen::Vector3d& point) const {

@@ -48,6 +48,8 @@ class InnerWall {
   WallFrame frame() const { return {grid_.axis_y(), bottom_, height_}; }
   // Returns the gap of a point. Points below and above the table have the gap of its border.
   WallGap Gap(const WallTable& table, const Eigen::Vector3d& point) const;
+  // Returns WallGap::gap alone.
+  double GapAlone(const WallTable& table, const Eigen::Vector3d& point) const;
   // True if a point is closer to the axis than `margin` [m] inside of all that surrounds it: its gap is below -margin.
   bool IsFarInside(const WallTable& table, const Eigen::Vector3d& point, double margin) const;
 

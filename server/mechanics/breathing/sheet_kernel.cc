@@ -1,5 +1,7 @@
 #include "server/mechanics/breathing/sheet_kernel.h"
 
+#include <algorithm>
+
 #include "server/mechanics/linalg/vector_targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "server/mechanics/breathing/sheet_kernel.cc"
@@ -44,15 +46,16 @@ double SideAreas(const std::vector<TrianglePacket>& packets, const double* x, co
   const auto third = hn::Set(d, 1.0 / 3), offset = hn::Set(d, field.offset);
   HWY_ALIGN double volume[kPacketTriangles] = {};
   for (const TrianglePacket& packet : packets) {
-    for (int lane = 0; lane < kPacketTriangles; lane += kSheetLanes, areas += 4 * kSheetLanes) {
+    for (int lane = 0; lane < kPacketTriangles; lane += kSheetLanes) {
       const Vectors a = points::Transposed<true>(x, packet.a + lane), b = points::Transposed<true>(x, packet.b + lane),
                     c = points::Transposed<true>(x, packet.c + lane);
       const Vectors area = SixthOfCross(Minus(b, a), Minus(c, a));
       const Vector values = hn::Add(hn::Add(Inner(slope, a), Inner(slope, b)), Inner(slope, c));
-      hn::StoreInterleaved4(area.x, area.y, area.z, hn::Sub(hn::Mul(third, values), offset), d, areas);
+      hn::StoreInterleaved4(area.x, area.y, area.z, hn::Sub(hn::Mul(third, values), offset), d, areas + 4 * lane);
       const auto cone = Inner(Minus(a, origin), area);
       hn::Store(hn::Add(hn::Load(d, volume + lane), cone), d, volume + lane);
     }
+    areas += 4 * kPacketTriangles;
   }
   double sum = 0;
   for (const double part : volume) sum += part;
@@ -67,44 +70,48 @@ std::array<double, 2> SetAreasHere(const SheetLayout& layout, const double* x, c
   return {right, left};
 }
 
-#if HWY_TARGET <= HWY_AVX2
-// An area and the field's mean on it are one vector.
-HWY_INLINE void GatherAround(const std::int32_t* first, const std::int32_t* end, const double* areas, double* sum,
-                             double* weighted) {
-  const hn::FixedTag<double, 4> four;
-  auto sums = hn::Zero(four), products = sums;
+// Sets the four numbers of a vertex's slopes and push; the fourth of each has no meaning.
+HWY_INLINE void GatherAround(const std::int32_t* first, const std::int32_t* end, const double* areas, double here,
+                             double* slopes, double* push) {
+  const hn::CappedTag<double, 4> d;
+  constexpr size_t kParts = 4 / hn::MaxLanes(d);
+  hn::Vec<decltype(d)> sums[kParts], products[kParts];
+  for (size_t k = 0; k < kParts; ++k) sums[k] = products[k] = hn::Zero(d);
   for (; first < end; first += kRingPlaces) {
 #pragma GCC unroll 8
     for (int t = 0; t < kRingPlaces; ++t) {
       const double* const at = areas + first[t];
-      const auto area = hn::LoadU(four, at);
-      sums = hn::Add(sums, area);
-      products = hn::Add(products, hn::Mul(hn::Set(four, at[3]), area));
+      for (size_t k = 0; k < kParts; ++k) {
+        const auto area = hn::Load(d, at + k * hn::Lanes(d));
+        sums[k] = hn::Add(sums[k], area);
+        products[k] = hn::Add(products[k], hn::Mul(hn::Set(d, at[3]), area));
+      }
     }
   }
-  hn::StoreU(sums, four, sum);
-  hn::StoreU(products, four, weighted);
-}
-#else
-HWY_INLINE void GatherAround(const std::int32_t* first, const std::int32_t* end, const double* areas, double* sum,
-                             double* weighted) {
-  for (; first < end; ++first) {
-    const double* const area = areas + *first;
-    for (int k = 0; k < 3; ++k) sum[k] += area[k], weighted[k] += area[3] * area[k];
+  const auto pressure = hn::Set(d, here), three = hn::Set(d, 3.0), quarter = hn::Set(d, 0.25);
+  for (size_t k = 0; k < kParts; ++k) {
+    hn::StoreU(sums[k], d, slopes + k * hn::Lanes(d));
+    hn::StoreU(hn::Mul(hn::Add(hn::Mul(pressure, sums[k]), hn::Mul(three, products[k])), quarter), d,
+               push + k * hn::Lanes(d));
   }
 }
-#endif
 
 void GatherHere(const SheetLayout& layout, const double* areas, const double* x, const LinearField& field,
                 double* slopes, double* push) {
   const std::size_t vertices = layout.first.size() - 1;
-  for (std::size_t i = 0; i < vertices; ++i, x += 3, slopes += 3, push += 3) {
-    double sum[4] = {}, weighted[4] = {};
-    const std::int32_t* const around = layout.around.data();  // a last vertex may have no triangle
-    GatherAround(around + layout.first[i], around + layout.first[i + 1], areas, sum, weighted);
-    const double here = field.slope[0] * x[0] + field.slope[1] * x[1] + field.slope[2] * x[2] - field.offset;
-    for (int k = 0; k < 3; ++k) slopes[k] = sum[k], push[k] = (here * sum[k] + 3 * weighted[k]) / 4;
-  }
+  const std::int32_t* const around = layout.around.data();  // a last vertex may have no triangle
+  const auto gather = [&](std::size_t i, double* of_slopes, double* of_push) HWY_ATTR {
+    const double* const at = x + 3 * i;
+    const double here = field.slope[0] * at[0] + field.slope[1] * at[1] + field.slope[2] * at[2] - field.offset;
+    GatherAround(around + layout.first[i], around + layout.first[i + 1], areas, here, of_slopes, of_push);
+  };
+  // The fourth number of a vertex lies where the first of the next will.
+  for (std::size_t i = 0; i + 1 < vertices; ++i) gather(i, slopes + 3 * i, push + 3 * i);
+  if (vertices == 0) return;
+  double last_slopes[4], last_push[4];
+  gather(vertices - 1, last_slopes, last_push);
+  std::copy_n(last_slopes, 3, slopes + 3 * (vertices - 1));
+  std::copy_n(last_push, 3, push + 3 * (vertices - 1));
 }
 
 constexpr std::size_t kSumLanes = 8;  // sums that stay apart, so that the order of additions is one
@@ -128,15 +135,29 @@ std::array<double, 2> SumBySideHere(const std::vector<double>& on_left, const do
   return {sum - sum_left, sum_left};
 }
 
-void AddBySideHere(const std::vector<double>& on_left, double right, double left, const double* values, double* to) {
+template <bool kAdd>
+HWY_INLINE void WithSides(const std::vector<double>& on_left, double right, double left, const double* values,
+                          double* to) {
   const Tag d;
   const std::size_t whole = on_left.size() / points::kLanes * points::kLanes;
   const Vector on_right = hn::Set(d, right), more = hn::Set(d, left - right);
   for (std::size_t i = 0; i < whole; i += points::kLanes) {
     const Vector factor = hn::Add(on_right, hn::Mul(more, hn::LoadU(d, &on_left[i])));
-    hn::StoreU(hn::Add(hn::LoadU(d, to + i), hn::Mul(factor, hn::LoadU(d, values + i))), d, to + i);
+    const Vector product = hn::Mul(factor, hn::LoadU(d, values + i));
+    hn::StoreU(kAdd ? hn::Add(hn::LoadU(d, to + i), product) : product, d, to + i);
   }
-  for (std::size_t i = whole; i < on_left.size(); ++i) to[i] += (right + (left - right) * on_left[i]) * values[i];
+  for (std::size_t i = whole; i < on_left.size(); ++i) {
+    const double product = (right + (left - right) * on_left[i]) * values[i];
+    to[i] = kAdd ? to[i] + product : product;
+  }
+}
+
+void AddBySideHere(const std::vector<double>& on_left, double right, double left, const double* values, double* to) {
+  WithSides<true>(on_left, right, left, values, to);
+}
+
+void SetBySideHere(const std::vector<double>& on_left, double right, double left, const double* values, double* to) {
+  WithSides<false>(on_left, right, left, values, to);
 }
 
 }  // namespace
@@ -150,6 +171,7 @@ HWY_EXPORT(SetAreasHere);
 HWY_EXPORT(GatherHere);
 HWY_EXPORT(SumBySideHere);
 HWY_EXPORT(AddBySideHere);
+HWY_EXPORT(SetBySideHere);
 
 std::array<double, 2> SetAreas(const SheetLayout& layout, const double* x, const double* apex, const LinearField& field,
                                double* areas) {
@@ -167,6 +189,10 @@ std::array<double, 2> SumBySide(const std::vector<double>& on_left, const double
 
 void AddBySide(const std::vector<double>& on_left, double right, double left, const double* values, double* to) {
   HWY_DYNAMIC_DISPATCH(AddBySideHere)(on_left, right, left, values, to);
+}
+
+void SetBySide(const std::vector<double>& on_left, double right, double left, const double* values, double* to) {
+  HWY_DYNAMIC_DISPATCH(SetBySideHere)(on_left, right, left, values, to);
 }
 
 }  // namespace phrenic

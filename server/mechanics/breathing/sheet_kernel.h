@@ -47,8 +47,9 @@ void GatherAreas(const SheetLayout& layout, const double* areas, const double* x
 
 // Sums of the products of two arrays: {where `on_left` is 0, where it is 1}. All have the same size.
 std::array<double, 2> SumBySide(const std::vector<double>& on_left, const double* a, const double* b);
-// Adds to `to`: values times `right` where `on_left` is 0, times `left` where it is 1.
+// Adds to `to`: values times `right` where `on_left` is 0, times `left` where it is 1. Or sets it to that.
 void AddBySide(const std::vector<double>& on_left, double right, double left, const double* values, double* to);
+void SetBySide(const std::vector<double>& on_left, double right, double left, const double* values, double* to);
 
 }  // namespace phrenic
 

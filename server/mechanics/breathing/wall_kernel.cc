@@ -57,6 +57,7 @@ HWY_INLINE void Evaluate(const WallShape& shape, const CagePosition& k, WallTabl
     }
     table.least[row] = hn::GetLane(hn::MinOfLanes(d, least));
   }
+  for (int row = 0; row + 1 < kWallHeights; ++row) table.least[row] = std::min(table.least[row], table.least[row + 1]);
 }
 
 void EvaluateHere(const WallShape& shape, const CagePosition& k, WallTable& table) {
@@ -88,9 +89,7 @@ HWY_INLINE Height HeightOf(const Vectors& point, const WallFrame& frame) {
 
 HWY_INLINE bool AllFarInside(const Height& at, const WallTable& table, double margin) {
   const Tag d;
-  const Vector low = hn::GatherIndex(d, table.least.data(), at.below);
-  const Vector high = hn::GatherIndex(d, table.least.data() + 1, at.below);
-  const Vector bound = hn::Sub(hn::Min(low, high), Constant(margin));
+  const Vector bound = hn::Sub(hn::GatherIndex(d, table.least.data(), at.below), Constant(margin));
   return hn::AllTrue(d, hn::And(hn::Gt(bound, hn::Zero(d)), hn::Lt(at.squared, hn::Mul(bound, bound))));
 }
 

@@ -26,7 +26,7 @@ struct WallFrame {
 struct WallTable {
   std::vector<double> radius, by_pump, by_bucket;
   std::array<std::vector<double>, kCageParts> by_part;  // empty for parts that do not move
-  std::vector<double> least;                            // radius of each row
+  std::vector<double> least;                            // radius of each row and the next
   std::vector<double> departure;                        // of each entry from the shared coordinates, while parts depart
 };
 

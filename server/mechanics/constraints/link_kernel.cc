@@ -1,6 +1,7 @@
 #include "server/mechanics/constraints/link_kernel.h"
 
 #include <algorithm>
+#include <bit>
 #include <iterator>
 
 #include "server/mechanics/linalg/vector_targets.h"
@@ -21,12 +22,14 @@ using points::Tag, points::Vector, points::Vectors;
 constexpr int kLanes = static_cast<int>(points::kLanes);
 
 // Returns the vectors from a to b of kLanes links. Reads only their ends, because another thread may be writing
-// adjacent vertices.
+// adjacent vertices; ends that are apart have four numbers.
+template <bool kApart>
 HWY_INLINE Vectors Between(const LinkPacket& packet, int first, const double* x) {
 #if HWY_TARGET <= HWY_AVX2
   const hn::FixedTag<double, 4> four;
-  const auto end = [&](const std::int32_t* offset)
-                       HWY_ATTR { return hn::MaskedLoad(hn::FirstN(four, 3), four, x + *offset); };
+  const auto end = [&](const std::int32_t* offset) HWY_ATTR {
+    return kApart ? hn::Load(four, x + *offset) : hn::MaskedLoad(hn::FirstN(four, 3), four, x + *offset);
+  };
   return points::Columns([&](int i) HWY_ATTR { return hn::Sub(end(packet.b + first + i), end(packet.a + first + i)); });
 #else
   const Vectors a = points::Transposed<true>(x, packet.a + first), b = points::Transposed<true>(x, packet.b + first);
@@ -51,21 +54,36 @@ HWY_INLINE void Store(const Vectors& v, int first, LinkVectors& to) {
   hn::Store(v.x, d, to.x + first), hn::Store(v.y, d, to.y + first), hn::Store(v.z, d, to.z + first);
 }
 
-void FindDirectionsHere(const LinkPacket* packets, int count, const double* x, LinkVectors* directions) {
+template <bool kApart>
+HWY_INLINE void FindAll(const LinkPacket* packets, int count, const double* x, LinkVectors* directions) {
   for (int p = 0; p < count; ++p) {
     for (int first = 0; first < packets[p].count; first += kLanes) {
-      Store(Between(packets[p], first, x), first, directions[p]);
+      Store(Between<kApart>(packets[p], first, x), first, directions[p]);
     }
   }
 }
 
-// Computes the impulses that restore the links from `first` on [kg m]: 0 for links that have turned too far, whose bits
-// it returns.
-HWY_INLINE std::uint64_t Correct(const LinkPacket& packet, int first, const LinkVectors& directions, const double* x,
-                                 LinkVectors& impulses) {
+void FindDirectionsHere(const LinkPacket* packets, int count, const double* x, LinkVectors* directions) {
+  FindAll<false>(packets, count, x, directions);
+}
+
+void FindDirectionsOfEnds(const LinkPacket* packets, int count, const SweptEnd* ends, LinkVectors* directions) {
+  FindAll<true>(packets, count, ends->x, directions);
+}
+
+// Of links in their order, a bit each.
+struct Corrected {
+  std::uint64_t missed = 0;  // have turned too far
+  bool move = false;         // any has an impulse that is not 0
+};
+
+// Computes the impulses that restore the links from `first` on [kg m]: 0 for links that have turned too far.
+template <bool kApart>
+HWY_INLINE Corrected Correct(const LinkPacket& packet, int first, const LinkVectors& directions, const double* x,
+                             LinkVectors& impulses) {
   const Tag d;
   const auto zero = hn::Zero(d);
-  const Vectors between = Between(packet, first, x), direction = Loaded(directions, first);
+  const Vectors between = Between<kApart>(packet, first, x), direction = Loaded(directions, first);
   const auto excess = hn::Sub(Dot(between, between), hn::Load(d, packet.squared_length + first));
   const auto along = Dot(between, direction);
   const auto discriminant = hn::Sub(hn::Mul(along, along), hn::Mul(Dot(direction, direction), excess));
@@ -80,7 +98,7 @@ HWY_INLINE std::uint64_t Correct(const LinkPacket& packet, int first, const Link
   Store(Scaled(scale, direction), first, impulses);
   std::uint8_t missed[8];
   hn::StoreMaskBits(d, hn::AndNot(reaches, off), missed);
-  return static_cast<std::uint64_t>(*missed) << first;
+  return {static_cast<std::uint64_t>(*missed) << first, !hn::AllFalse(d, moves)};
 }
 
 // Adds the displacements of one end of kLanes links to x, and displacement times `rate` to v.
@@ -179,12 +197,66 @@ Restored RestorePacketsHere(const LinkPacket* packets, int count, const LinkVect
   for (int p = 0; p < count; ++p) {
     std::uint64_t of_packet = 0;
     for (int first = 0; first < packets[p].count; first += kLanes) {
-      of_packet |= Correct(packets[p], first, directions[p], x, impulses[p]);
+      of_packet |= Correct<false>(packets[p], first, directions[p], x, impulses[p]).missed;
     }
     missed |= (of_packet & ((1U << packets[p].count) - 1)) << (p * kPacketLinks);
   }
   for (int p = 0; p < count; ++p) MoveAll(packets[p], impulses[p], 1 / dt, x, v, largest);
   return {missed, largest.Whole()};
+}
+
+// Adds an impulse (x, y, z, 0) times an inverse mass to the position of an end, and times `rate` to its velocity.
+HWY_INLINE void MoveEnd(double inverse_mass, const double* impulse, double rate, double* end) {
+#if HWY_TARGET <= HWY_AVX3
+  const hn::FixedTag<double, 4> four;
+  const hn::FixedTag<double, 8> eight;
+  const auto both = hn::Combine(eight, hn::Load(four, impulse), hn::Load(four, impulse));
+  const auto rates = hn::Combine(eight, hn::Set(four, rate), hn::Set(four, 1.0));
+  const auto displacement = hn::Mul(hn::Set(eight, inverse_mass), both);
+  hn::Store(hn::Add(hn::Load(eight, end), hn::Mul(rates, displacement)), eight, end);
+#else
+  const hn::CappedTag<double, 4> d;
+  for (size_t k = 0; k < 4; k += hn::Lanes(d)) {
+    const auto displacement = hn::Mul(hn::Set(d, inverse_mass), hn::Load(d, impulse + k));
+    hn::Store(hn::Add(hn::Load(d, end + k), displacement), d, end + k);
+    hn::Store(hn::Add(hn::Load(d, end + 4 + k), hn::Mul(hn::Set(d, rate), displacement)), d, end + 4 + k);
+  }
+#endif
+}
+
+HWY_INLINE void MoveApart(const LinkPacket& packet, int first, const LinkVectors& impulses, double rate,
+                          double* numbers) {
+  const Tag d;
+  HWY_ALIGN double rows[4 * kLanes];
+  const Vectors impulse = Loaded(impulses, first);
+  hn::StoreInterleaved4(impulse.x, impulse.y, impulse.z, hn::Zero(d), d, rows);
+  const auto move = [&](int i) HWY_ATTR {
+    MoveEnd(packet.inverse_a[first + i], rows + 4 * i, rate, numbers + packet.a[first + i]);
+    MoveEnd(-packet.inverse_b[first + i], rows + 4 * i, rate, numbers + packet.b[first + i]);
+  };
+  const int count = std::min(kLanes, packet.count - first);
+  for (int i = 0; i < count; ++i) move(i);
+}
+
+std::uint64_t RestoreEndsHere(const LinkPacket* packets, int count, const LinkVectors* directions, double dt,
+                              SweptEnd* ends) {
+  double* const numbers = ends->x;
+  LinkVectors impulses[kPacketsTogether];
+  std::uint64_t missed = 0, move = 0;  // move: a bit for every kLanes links
+  for (int p = 0; p < count; ++p) {
+    std::uint64_t of_packet = 0;
+    for (int first = 0; first < packets[p].count; first += kLanes) {
+      const Corrected part = Correct<true>(packets[p], first, directions[p], numbers, impulses[p]);
+      of_packet |= part.missed;
+      move |= static_cast<std::uint64_t>(part.move) << (p * kPacketLinks + first);
+    }
+    missed |= (of_packet & ((1U << packets[p].count) - 1)) << (p * kPacketLinks);
+  }
+  for (; move != 0; move &= move - 1) {
+    const int bit = std::countr_zero(move), p = bit / kPacketLinks;
+    MoveApart(packets[p], bit % kPacketLinks, impulses[p], 1 / dt, numbers);
+  }
+  return missed;
 }
 
 }  // namespace
@@ -195,7 +267,24 @@ HWY_AFTER_NAMESPACE();
 namespace phrenic {
 
 HWY_EXPORT(FindDirectionsHere);
+HWY_EXPORT(FindDirectionsOfEnds);
 HWY_EXPORT(RestorePacketsHere);
+HWY_EXPORT(RestoreEndsHere);
+
+namespace {
+
+// Adds a link, between vertices at offsets a and b, to the last packet.
+void AddToPacket(const Link& link, int a, int b, LinkPacket& packet) {
+  const int i = packet.count++;
+  packet.squared_length[i] = link.length * link.length;
+  packet.inverse_a[i] = link.inverse_a;
+  packet.inverse_b[i] = link.inverse_b;
+  // Padding lanes read the last link's ends.
+  std::fill(packet.a + i, std::end(packet.a), a);
+  std::fill(packet.b + i, std::end(packet.b), b);
+}
+
+}  // namespace
 
 std::vector<LinkPacket> PackLinks(absl::Span<const Link> links, int first, bool in_blocks) {
   std::vector<LinkPacket> packets;
@@ -206,15 +295,21 @@ std::vector<LinkPacket> PackLinks(absl::Span<const Link> links, int first, bool 
     if (!same_group || packets.back().count == kPacketLinks) {
       packets.push_back({.first = first + static_cast<int>(next), .pairs = IsPair(link), .sign = link.sign});
     }
-    LinkPacket& packet = packets.back();
-    const int i = packet.count++;
-    packet.squared_length[i] = link.length * link.length;
-    packet.inverse_a[i] = link.inverse_a;
-    packet.inverse_b[i] = link.inverse_b;
-    // Padding lanes read the last link's ends.
     const int from = in_blocks ? static_cast<int>(link.a / kVertexBlock * kVertexBlock) : 0;
-    std::fill(packet.a + i, std::end(packet.a), 3 * (link.a - from));
-    std::fill(packet.b + i, std::end(packet.b), 3 * (link.b - from));
+    AddToPacket(link, 3 * (link.a - from), 3 * (link.b - from), packets.back());
+  }
+  return packets;
+}
+
+std::vector<LinkPacket> PackSweptLinks(absl::Span<const Link> links, int first) {
+  constexpr int kNumbers = sizeof(SweptEnd) / sizeof(double);
+  std::vector<LinkPacket> packets;
+  for (size_t next = 0; next < links.size(); ++next) {
+    const Link& link = links[next];
+    if (next == 0 || packets.back().sign != link.sign || packets.back().count == kPacketLinks) {
+      packets.push_back({.first = first + static_cast<int>(next), .sign = link.sign});
+    }
+    AddToPacket(link, kNumbers * link.a, kNumbers * link.b, packets.back());
   }
   return packets;
 }
@@ -223,10 +318,20 @@ void FindDirections(absl::Span<const LinkPacket> packets, const double* x, LinkV
   HWY_DYNAMIC_DISPATCH(FindDirectionsHere)(packets.data(), static_cast<int>(packets.size()), x, directions);
 }
 
+void FindDirections(absl::Span<const LinkPacket> packets, const SweptEnd* ends, LinkVectors* directions) {
+  HWY_DYNAMIC_DISPATCH(FindDirectionsOfEnds)(packets.data(), static_cast<int>(packets.size()), ends, directions);
+}
+
 Restored RestorePackets(absl::Span<const LinkPacket> packets, const LinkVectors* directions, double dt, double* x,
                         double* v) {
   const auto count = static_cast<int>(packets.size());
   return HWY_DYNAMIC_DISPATCH(RestorePacketsHere)(packets.data(), count, directions, dt, x, v);
+}
+
+std::uint64_t RestorePackets(absl::Span<const LinkPacket> packets, const LinkVectors* directions, double dt,
+                             SweptEnd* ends) {
+  const auto count = static_cast<int>(packets.size());
+  return HWY_DYNAMIC_DISPATCH(RestoreEndsHere)(packets.data(), count, directions, dt, ends);
 }
 
 }  // namespace phrenic

@@ -32,6 +32,12 @@ struct alignas(64) LinkVectors {
   double x[kPacketLinks], y[kPacketLinks], z[kPacketLinks];
 };
 
+// A vertex at the ends of links, apart from the others: one load and one store move its position and its velocity.
+struct alignas(64) SweptEnd {
+  double x[4] = {};  // position, and 0 [m]
+  double v[4] = {};  // velocity, and 0 [m/s]
+};
+
 // True if vertex b follows vertex a, so that their coordinates are contiguous.
 constexpr bool IsPair(const Link& link) { return link.b == link.a + 1; }
 
@@ -39,9 +45,12 @@ constexpr bool IsPair(const Link& link) { return link.b == link.a + 1; }
 // pairs or none is. With `in_blocks` (each link lies in one block of kVertexBlock vertices) a packet's links lie in one
 // block, and offsets are relative to it.
 std::vector<LinkPacket> PackLinks(absl::Span<const Link> links, int first, bool in_blocks);
+// The same for links whose vertices are numbers of SweptEnds: the packets have their offsets, and none is of pairs.
+std::vector<LinkPacket> PackSweptLinks(absl::Span<const Link> links, int first);
 
 // Sets `directions` to the vectors from a to b of the packets' links [m]. `x` points to the vertex of offset 0.
 void FindDirections(absl::Span<const LinkPacket> packets, const double* x, LinkVectors* directions);
+void FindDirections(absl::Span<const LinkPacket> packets, const SweptEnd* ends, LinkVectors* directions);
 
 struct Restored {
   std::uint64_t missed = 0;  // bit kPacketLinks p + i: link i of packet p is not restored
@@ -54,6 +63,9 @@ struct Restored {
 // direction are reported in `missed` and left unchanged. Thread-safe for packets without common vertices.
 Restored RestorePackets(absl::Span<const LinkPacket> packets, const LinkVectors* directions, double dt, double* x,
                         double* v);
+// The same for packets of PackSweptLinks, without the displacement. Returns Restored::missed.
+std::uint64_t RestorePackets(absl::Span<const LinkPacket> packets, const LinkVectors* directions, double dt,
+                             SweptEnd* ends);
 
 }  // namespace phrenic
 

@@ -36,6 +36,28 @@ std::vector<std::vector<Link>> ByColour(const std::vector<Link>& links) {
   return colours;
 }
 
+// Returns the vertices at the ends of links, in ascending order.
+std::vector<int> EndsOf(const std::vector<Link>& links) {
+  std::vector<int> vertices;
+  vertices.reserve(2 * links.size());
+  for (const Link& link : links) vertices.insert(vertices.end(), {link.a, link.b});
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+int PlaceIn(const std::vector<int>& vertices, int vertex) {
+  return static_cast<int>(std::lower_bound(vertices.begin(), vertices.end(), vertex) - vertices.begin());
+}
+
+void Fetch(const ConstPoints& x, const ConstPoints& v, int vertex, SweptEnd& end) {
+  for (int k = 0; k < 3; ++k) end.x[k] = x(k, vertex), end.v[k] = v(k, vertex);
+}
+
+void PutInto(const SweptEnd& end, int vertex, State& state) {
+  for (int k = 0; k < 3; ++k) state.x(k, vertex) = end.x[k], state.v(k, vertex) = end.v[k];
+}
+
 // True if the link is to be restored.
 bool Violated(const Link& link, const ConstPoints& x) { return link.sign == 0 || link.Violation(x) > 0; }
 
@@ -43,6 +65,7 @@ bool Violated(const Link& link, const ConstPoints& x) { return link.sign == 0 ||
 
 struct SweptLinks::Memory {
   std::vector<LinkVectors> directions;  // one entry per packet
+  std::vector<SweptEnd> ends;           // one per vertex
 };
 
 std::unique_ptr<Constraint> SweptLinks::Make(const std::string& name, const std::vector<Link>& links, int sweeps,
@@ -53,11 +76,13 @@ std::unique_ptr<Constraint> SweptLinks::Make(const std::string& name, const std:
 }
 
 SweptLinks::SweptLinks(std::string name, const std::vector<Link>& links, int sweeps)
-    : Constraint(std::move(name)), sweeps_(sweeps) {
+    : Constraint(std::move(name)), vertices_(EndsOf(links)), sweeps_(sweeps) {
   for (std::vector<Link>& colour : ByColour(links)) {
     std::stable_sort(colour.begin(), colour.end(), [](const Link& p, const Link& q) { return p.a < q.a; });
     colour_start_.push_back(packets_.size());
-    std::vector<LinkPacket> packets = PackLinks(colour, static_cast<int>(links_.size()), false);
+    std::vector<Link> of_ends = colour;
+    for (Link& link : of_ends) link.a = PlaceIn(vertices_, link.a), link.b = PlaceIn(vertices_, link.b);
+    std::vector<LinkPacket> packets = PackSweptLinks(of_ends, static_cast<int>(links_.size()));
     for (LinkPacket& packet : packets) packet.relaxation = kRelaxation;
     packets_.insert(packets_.end(), packets.begin(), packets.end());
     links_.insert(links_.end(), colour.begin(), colour.end());
@@ -66,25 +91,34 @@ SweptLinks::SweptLinks(std::string name, const std::vector<Link>& links, int swe
   colour_start_.push_back(packets_.size());
 }
 
-void SweptLinks::RestoreColour(size_t first, size_t end, double dt, const LinkVectors* directions, State& state) const {
+SweptEnd& SweptLinks::EndOf(int vertex, Memory& memory) const { return memory.ends[PlaceIn(vertices_, vertex)]; }
+
+void SweptLinks::RestoreTurned(const Link& link, const Eigen::Vector3d& direction, double dt, Memory& memory,
+                               State& state) const {
+  for (const int vertex : {link.a, link.b}) PutInto(EndOf(vertex, memory), vertex, state);
+  if (!Violated(link, state.x)) return;
+  Restore(link, direction, dt, state.x, state.v);
+  for (const int vertex : {link.a, link.b}) Fetch(state.x, state.v, vertex, EndOf(vertex, memory));
+}
+
+void SweptLinks::RestoreColour(size_t first, size_t end, double dt, Memory& memory, State& state) const {
   for (size_t p = first; p < end; p += kPacketsTogether) {
     const auto some = absl::MakeConstSpan(packets_).subspan(p, std::min<size_t>(kPacketsTogether, end - p));
-    std::uint64_t missed = RestorePackets(some, directions + p, dt, state.x.data(), state.v.data()).missed;
+    std::uint64_t missed = RestorePackets(some, &memory.directions[p], dt, memory.ends.data());
     for (; missed != 0; missed &= missed - 1) {
       const int bit = std::countr_zero(missed), lane = bit % kPacketLinks;
       const size_t packet = bit / kPacketLinks;
-      const Link& link = links_[some[packet].first + lane];
-      const LinkVectors& of = directions[p + packet];
-      if (Violated(link, state.x)) Restore(link, {of.x[lane], of.y[lane], of.z[lane]}, dt, state.x, state.v);
+      const LinkVectors& of = memory.directions[p + packet];
+      RestoreTurned(links_[some[packet].first + lane], {of.x[lane], of.y[lane], of.z[lane]}, dt, memory, state);
     }
   }
 }
 
-void SweptLinks::Sweep(bool backwards, double dt, const LinkVectors* directions, State& state) const {
+void SweptLinks::Sweep(bool backwards, double dt, Memory& memory, State& state) const {
   const size_t colours = colour_start_.size() - 1;
   for (size_t i = 0; i < colours; ++i) {
     const size_t colour = backwards ? colours - 1 - i : i;
-    RestoreColour(colour_start_[colour], colour_start_[colour + 1], dt, directions, state);
+    RestoreColour(colour_start_[colour], colour_start_[colour + 1], dt, memory, state);
   }
 }
 
@@ -92,9 +126,13 @@ void SweptLinks::Project(const v1::Parameters& parameters, const ConstPoints& be
                          State& state) const {
   if (!parameters.apply_links()) return;
   auto& memory = scratch.Get<Memory>();
-  if (memory.directions.size() < packets_.size()) memory.directions.resize(packets_.size());
-  FindDirections(packets_, before.data(), memory.directions.data());
-  for (int i = 0; i < sweeps_; ++i) Sweep(i % 2 == 1, dt, memory.directions.data(), state);
+  memory.directions.resize(packets_.size());
+  memory.ends.resize(vertices_.size());
+  for (size_t i = 0; i < vertices_.size(); ++i) Fetch(before, state.v, vertices_[i], memory.ends[i]);
+  FindDirections(packets_, memory.ends.data(), memory.directions.data());
+  for (size_t i = 0; i < vertices_.size(); ++i) Fetch(state.x, state.v, vertices_[i], memory.ends[i]);
+  for (int i = 0; i < sweeps_; ++i) Sweep(i % 2 == 1, dt, memory, state);
+  for (size_t i = 0; i < vertices_.size(); ++i) PutInto(memory.ends[i], vertices_[i], state);
 }
 
 void SweptLinks::ProjectVelocities(const v1::Parameters& parameters, const Scratch&, State& state) const {

@@ -42,12 +42,15 @@ class SweptLinks final : public Constraint {
  private:
   SweptLinks(std::string name, const std::vector<Link>& links, int sweeps);
 
-  struct Memory;
-  void Sweep(bool backwards, double dt, const LinkVectors* directions, State& state) const;
+  struct Memory;  // of one projection
+  void Sweep(bool backwards, double dt, Memory& memory, State& state) const;
   // Packets first to end - 1, of one colour.
-  void RestoreColour(size_t first, size_t end, double dt, const LinkVectors* directions, State& state) const;
+  void RestoreColour(size_t first, size_t end, double dt, Memory& memory, State& state) const;
+  void RestoreTurned(const Link& link, const Eigen::Vector3d& direction, double dt, Memory& memory, State& state) const;
+  SweptEnd& EndOf(int vertex, Memory& memory) const;
 
   std::vector<Link> links_;           // by colour
+  std::vector<int> vertices_;         // at their ends, in ascending order: those of the SweptEnds
   std::vector<LinkPacket> packets_;   // of links_
   std::vector<size_t> colour_start_;  // first packet of each colour, then the number of packets
   int sweeps_;

@@ -176,6 +176,18 @@ std::array<double, 2> ThoraxPressures::Swept(const ConstPoints& v, const Slopes&
 
 void ThoraxPressures::AddSlopes(double right, double left, const Slopes& slopes, MutablePoints g) const {
   AddBySide(on_left_, right, left, slopes.sum.data(), g.col(sheet_.first_vertex).data());
+  AddMidline(right, left, slopes, g);
+}
+
+void ThoraxPressures::SetSlopesAlone(double right, double left, const Slopes& slopes, Points& g) const {
+  const Eigen::Index end = sheet_.first_vertex + slopes.sum.cols();
+  g.leftCols(sheet_.first_vertex).setZero();
+  g.rightCols(g.cols() - end).setZero();
+  SetBySide(on_left_, right, left, slopes.sum.data(), g.col(sheet_.first_vertex).data());
+  AddMidline(right, left, slopes, g);
+}
+
+void ThoraxPressures::AddMidline(double right, double left, const Slopes& slopes, MutablePoints g) const {
   for (size_t m = 0; m < midline_.size(); ++m) {
     g.col(sheet_.first_vertex + midline_[m].vertex) += (left - right) * slopes.left.col(static_cast<Eigen::Index>(m));
   }
@@ -311,8 +323,7 @@ void ThoraxPressures::AddToCage(double right, double left, const CagePosition& k
 
 void ThoraxPressures::SetVolumeSlopes(double right, double left, const Slopes& slopes, const CagePosition& k,
                                       const EvalContext& at, Points& g) const {
-  g.setZero();
-  AddSlopes(-right, -left, slopes, g);
+  SetSlopesAlone(-right, -left, slopes, g);
   AddToCage(right, left, k, at, g);
   shift_.AddForce(right * WithSign(kRight) + left * WithSign(kLeft), g);
 }
@@ -326,13 +337,11 @@ void ThoraxPressures::AddStiffness(const EvalContext& at, StiffnessSink& sink) c
     SetVolumeSlopes(h == kRight ? 1 : 0, h == kLeft ? 1 : 0, slopes, now.cage, at, g);
     sink.AddOuter(now.open[h] * RecoilSlope(now.volume[h]) / parameters.lung_compliance(), g);
   }
-  g.setZero();
-  AddSlopes(1, 1, slopes, g);
+  SetSlopesAlone(1, 1, slopes, g);
   if (const double elastance = GasElastance(at); elastance > 0) {
     SetVolumeSlopes(now.open[kRight], now.open[kLeft], slopes, now.cage, at, g);
     sink.AddOuter(elastance, g);
-    g.setZero();
-    AddSlopes(1, 1, slopes, g);
+    SetSlopesAlone(1, 1, slopes, g);
   }
   sink.AddOuter(AbdominalSlope(now.displaced) / parameters.abdominal_compliance(), g);
   Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
@@ -358,8 +367,7 @@ void ThoraxPressures::AddSharedDamping(const EvalContext& at, OuterProducts& sha
   if (left > 0) SetVolumeSlopes(0, 1, slopes, now.cage, at, add(left));
   if (scene_.abdomen().resistance() <= 0) return;
   Points& g = add(scene_.abdomen().resistance());
-  g.setZero();
-  AddSlopes(1, 1, slopes, g);
+  SetSlopesAlone(1, 1, slopes, g);
 }
 
 double ThoraxPressures::EnergyOfGas(const EvalContext& at, const Sides& now) const {

@@ -101,6 +101,10 @@ class ThoraxPressures final : public Force {
   std::array<double, 2> Swept(const ConstPoints& v, const Slopes& slopes) const;
   // Adds right dS_right/dx + left dS_left/dx to g, 3 x simulated vertices.
   void AddSlopes(double right, double left, const Slopes& slopes, MutablePoints g) const;
+  // Sets g to that.
+  void SetSlopesAlone(double right, double left, const Slopes& slopes, Points& g) const;
+  // Adds what the midline's vertices have on the left.
+  void AddMidline(double right, double left, const Slopes& slopes, MutablePoints g) const;
   Sides SidesAt(const EvalContext& at, const Slopes& slopes) const;
   void SetResistances(const EvalContext& at, Sides& now) const;
   double AirwayPressure(const EvalContext& at, const Sides& now) const;

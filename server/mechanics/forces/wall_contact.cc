@@ -78,15 +78,9 @@ void WallContact::RestOnSurface(const Eigen::VectorXd& pushes) {
   Pack();
 }
 
-const WallTable& WallContact::TableAt(const EvalContext& at) const {
-  WallTable& table = at.scratch.Get<WallTable>();
-  wall_->wall.Evaluate(wall_->Position(at), wall_->Moving(at), table);
-  return table;
-}
-
 template <typename Visit>
 void WallContact::ForEachNear(const EvalContext& at, const Visit& visit) const {
-  const WallTable& table = TableAt(at);
+  const WallTable& table = wall_->TableAt(at);
   for (const Slider& slider : sliders_) {
     const Eigen::Vector3d point = at.x.col(slider.vertex);
     if (!wall_->wall.IsFarInside(table, point, margin_)) visit(slider, wall_->wall.Gap(table, point));
@@ -95,7 +89,7 @@ void WallContact::ForEachNear(const EvalContext& at, const Visit& visit) const {
 
 void WallContact::AddForce(const EvalContext& at, MutablePoints f) const {
   const WallReaction push =
-      PushFromWall(packets_, wall_->wall.frame(), TableAt(at), margin_, largest_depth_, at.x.data(), f.data());
+      PushFromWall(packets_, wall_->wall.frame(), wall_->TableAt(at), margin_, largest_depth_, at.x.data(), f.data());
   wall_->pump.AddForce(push.pump, f);
   wall_->bucket.AddForce(push.bucket, f);
   wall_->AddPartForces(push.parts, at, f);
@@ -110,7 +104,7 @@ void WallContact::AddStiffness(const EvalContext& at, StiffnessSink& sink) const
 }
 
 void WallContact::AddLatentStiffness(const EvalContext& at, StiffnessSink& sink) const {
-  const WallTable& table = TableAt(at);
+  const WallTable& table = wall_->TableAt(at);
   for (const Slider& slider : sliders_) {
     const WallGap gap = wall_->wall.Gap(table, at.x.col(slider.vertex));
     if (Yields(slider, gap)) continue;
@@ -139,13 +133,21 @@ double WallContact::Energy(const EvalContext& at) const {
 std::span<const Force::Output> WallContact::outputs() const { return kContactOutputs; }
 
 double WallContact::Read(size_t output, const EvalContext& at) const {
-  double area = 0, force = 0;
+  double sum = 0;
+  if (output == 0) {
+    const WallTable& table = wall_->TableAt(at);
+    for (const Slider& slider : sliders_) {
+      const Eigen::Vector3d point = at.x.col(slider.vertex);
+      if (wall_->wall.IsFarInside(table, point, margin_)) continue;
+      if (wall_->wall.GapAlone(table, point) > std::min(slider.touching, 0.0) - kTouching) sum += slider.area;
+    }
+    return sum;
+  }
   ForEachNear(at, [&](const Slider& slider, const WallGap& gap) {
-    if (gap.gap > std::min(slider.touching, 0.0) - kTouching) area += slider.area;
     const double push = stiffness_ * slider.area * std::clamp(gap.gap - slider.touching, 0.0, largest_depth_);
-    force += push * gap.gradient.norm();
+    sum += push * gap.gradient.norm();
   });
-  return output == 0 ? area : force;
+  return sum;
 }
 
 }  // namespace phrenic

@@ -45,7 +45,6 @@ class WallContact final : public Force {
         wall_(std::move(wall)) {}
   void PlaceAtRest(const Model& model);
   void Pack();
-  const WallTable& TableAt(const EvalContext& at) const;
   // Calls visit(slider, gap) for those that may touch the wall.
   template <typename Visit>
   void ForEachNear(const EvalContext& at, const Visit& visit) const;

@@ -27,25 +27,57 @@ HWY_INLINE Vector DotOf(const Vectors& a, const Vectors& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
 
-HWY_INLINE void AddTo(double* sum, Vector value) {
+// The sums of the columns in packets, in the order of SumProducts, of one term or two: all stays in registers.
+template <std::size_t kTerms>
+HWY_INLINE void SumPackets(const WeightedTerms& terms, const double* start, const double* v, std::size_t columns,
+                           double* sums) {
   const Tag d;
-  hn::StoreU(hn::Add(hn::LoadU(d, sum), value), d, sum);
+  constexpr std::size_t kParts = kColumnPacket / kColumnLanes, kSums = kTerms * (kTerms + 3) / 2;
+  Vector all[kSums][kParts];
+  for (auto& sum : all) {
+    for (Vector& part : sum) part = hn::Zero(d);
+  }
+  const double* const first = terms.g[0];
+  const double* const last = terms.g[kTerms - 1];
+  for (std::size_t i = 0; i < columns; i += kColumnPacket) {
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const std::size_t column = i + part * kColumnLanes;
+      const Vectors from = LoadColumns(start + 3 * column), to = LoadColumns(v + 3 * column);
+      const Vectors gain = {hn::Sub(to.x, from.x), hn::Sub(to.y, from.y), hn::Sub(to.z, from.z)};
+      const Vector weight = hn::LoadU(d, terms.weights + column);
+      const Vectors a = LoadColumns(first + 3 * column);
+      all[0][part] = hn::Add(all[0][part], DotOf(a, gain));
+      all[1][part] = hn::Add(all[1][part], hn::Mul(weight, DotOf(a, a)));
+      if constexpr (kTerms > 1) {
+        const Vectors b = LoadColumns(last + 3 * column);
+        all[2][part] = hn::Add(all[2][part], DotOf(b, gain));
+        all[3][part] = hn::Add(all[3][part], hn::Mul(weight, DotOf(b, a)));
+        all[4][part] = hn::Add(all[4][part], hn::Mul(weight, DotOf(b, b)));
+      }
+    }
+  }
+  for (const auto& sum : all) {
+    for (const Vector& part : sum) hn::StoreU(part, d, sums), sums += kColumnLanes;
+  }
 }
 
-// Adds the products of the columns from `i` on to the lanes from `lane` on of each sum.
-HWY_INLINE void AddProducts(const WeightedTerms& terms, const double* start, const double* v, std::size_t i,
-                            std::size_t lane, double* sums) {
+// The same for any number of terms.
+HWY_INLINE void SumPacketsOfMany(const WeightedTerms& terms, const double* start, const double* v, std::size_t columns,
+                                 double* sums) {
   const Tag d;
-  const Vectors from = LoadColumns(start + 3 * i), to = LoadColumns(v + 3 * i);
-  const Vectors gain = {hn::Sub(to.x, from.x), hn::Sub(to.y, from.y), hn::Sub(to.z, from.z)};
-  const Vector weight = hn::LoadU(d, terms.weights + i);
-  double* sum = sums + lane;
-  for (std::size_t a = 0; a < terms.g.size(); ++a) {
-    const Vectors g = LoadColumns(terms.g[a] + 3 * i);
-    AddTo(sum, DotOf(g, gain));
-    sum += kColumnPacket;
-    for (std::size_t b = 0; b <= a; ++b, sum += kColumnPacket) {
-      AddTo(sum, hn::Mul(weight, DotOf(g, LoadColumns(terms.g[b] + 3 * i))));
+  for (std::size_t i = 0; i < columns; i += kColumnLanes) {
+    const Vectors from = LoadColumns(start + 3 * i), to = LoadColumns(v + 3 * i);
+    const Vectors gain = {hn::Sub(to.x, from.x), hn::Sub(to.y, from.y), hn::Sub(to.z, from.z)};
+    const Vector weight = hn::LoadU(d, terms.weights + i);
+    double* sum = sums + i % kColumnPacket;
+    const auto add = [&](Vector value) HWY_ATTR {
+      hn::StoreU(hn::Add(hn::LoadU(d, sum), value), d, sum);
+      sum += kColumnPacket;
+    };
+    for (std::size_t a = 0; a < terms.g.size(); ++a) {
+      const Vectors g = LoadColumns(terms.g[a] + 3 * i);
+      add(DotOf(g, gain));
+      for (std::size_t b = 0; b <= a; ++b) add(hn::Mul(weight, DotOf(g, LoadColumns(terms.g[b] + 3 * i))));
     }
   }
 }
@@ -69,7 +101,16 @@ void AddLastProducts(const WeightedTerms& terms, const double* start, const doub
 
 void SumProductsHere(const WeightedTerms& terms, const double* start, const double* v, double* sums) {
   const std::size_t whole = terms.columns / kColumnPacket * kColumnPacket;
-  for (std::size_t i = 0; i < whole; i += kColumnLanes) AddProducts(terms, start, v, i, i % kColumnPacket, sums);
+  switch (terms.g.size()) {
+    case 1:
+      SumPackets<1>(terms, start, v, whole, sums);
+      break;
+    case 2:
+      SumPackets<2>(terms, start, v, whole, sums);
+      break;
+    default:
+      SumPacketsOfMany(terms, start, v, whole, sums);
+  }
   AddLastProducts(terms, start, v, whole, sums);
 }
 

@@ -28,8 +28,7 @@ CageLimit::CageLimit(std::shared_ptr<const CageWall> wall, int obstacle, const M
     : wall_(std::move(wall)) {
   const State state = builder.model.InitialState();
   const EvalContext at = MakeEvalContext(builder.model, builder.model.parameters, state);
-  WallTable table;
-  wall_->wall.Evaluate(wall_->Position(at), wall_->Moving(at), table);
+  const WallTable& table = wall_->TableAt(at);
   const NearestSearch& search = builder.Search(obstacle);
   for (int i = 0; i < static_cast<int>(rest.cols()) && !builder.stop.Stopped(); ++i) {
     const Neighbour nearest = search.Nearest(rest.col(i), kNotHeld);
@@ -37,22 +36,21 @@ CageLimit::CageLimit(std::shared_ptr<const CageWall> wall, int obstacle, const M
     const double hold =
         ShareOf(nearest.distance, kNotHeld, kWhollyHeld) * ShareOf(std::abs(rest(0, i)), kMedial, kLateral);
     if (hold == 0) continue;
-    vertices_.push_back({i, std::max(kLeastLimit, wall_->wall.Gap(table, rest.col(i)).gap), hold});
+    vertices_.push_back({i, std::max(kLeastLimit, wall_->wall.GapAlone(table, rest.col(i))), hold});
   }
 }
 
 template <bool kVelocities>
 void CageLimit::PutBack(const EvalContext& at, MutablePoints x, MutablePoints v) const {
-  WallTable& table = at.scratch.Get<WallTable>();
-  wall_->wall.Evaluate(wall_->Position(at), wall_->Moving(at), table);
+  const WallTable& table = wall_->TableAt(at);
   const CagePosition rate = kVelocities ? wall_->Rate(at) : CagePosition{};
   for (const Vertex& vertex : vertices_) {
     const int i = vertex.index;
     for (int round = 0; round < kPutBackRounds; ++round) {
       if (wall_->wall.IsFarInside(table, x.col(i), 0)) break;
-      const WallGap gap = wall_->wall.Gap(table, x.col(i));
-      const double excess = gap.gap - vertex.limit;
+      const double excess = wall_->wall.GapAlone(table, x.col(i)) - vertex.limit;
       if (!(excess > 0)) break;
+      const WallGap gap = wall_->wall.Gap(table, x.col(i));
       const Eigen::Vector3d way = vertex.hold / gap.gradient.squaredNorm() * gap.gradient;
       x.col(i) -= excess * way;
       if constexpr (!kVelocities) continue;

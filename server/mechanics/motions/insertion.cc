@@ -1,6 +1,8 @@
 #include "server/mechanics/motions/insertion.h"
 
 #include <cmath>
+#include <cstring>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -107,6 +109,13 @@ void DriveVertex(int vertex, Model& model) {
   model.driven_vertices.push_back(vertex);
 }
 
+struct LastWallTable {
+  const CageWall* of = nullptr;  // null: of none
+  CagePosition k;
+  MovingParts moving = {};
+  WallTable table;
+};
+
 // True if a live parameter lets the part move.
 bool IsReleased(size_t part, const v1::Parameters& p) {
   if (part == kRightSegment) return p.flail_right() > 0;
@@ -125,6 +134,18 @@ MovingParts CageWall::Moving(const EvalContext& at) const {
   MovingParts moving = {};
   for (size_t i = 0; i < kCageParts; ++i) moving[i] = Moves(i, at);
   return moving;
+}
+
+const WallTable& CageWall::TableAt(const EvalContext& at) const {
+  LastWallTable& last = at.scratch.Get<LastWallTable>();
+  const CagePosition k = Position(at);
+  const MovingParts moving = Moving(at);
+  const bool same = last.of == this && last.moving == moving && std::memcmp(&last.k, &k, sizeof(k)) == 0;
+  if (!same) wall.Evaluate(k, moving, last.table);
+  last.of = this;
+  last.k = k;
+  last.moving = moving;
+  return last.table;
 }
 
 CagePosition CageWall::Position(const EvalContext& at) const {
@@ -180,30 +201,60 @@ absl::StatusOr<std::unique_ptr<Motion>> Insertion::Make(const v1::Insertion& sce
   return motion;
 }
 
-void Insertion::Drive(const EvalContext& at, State& state) const {
-  const CagePosition shared = wall_->Position(at), shared_rate = wall_->Rate(at);
+struct Insertion::Paths {
+  const Insertion* of = nullptr;  // null: of none
+  CagePosition shared;
+  Points x, by_pump, by_bucket;  // 3 x the inserted vertices [m]
+};
+
+// A step asks for those at its start, for each vector of forces that it transfers, and for those at its end.
+const Insertion::Paths& Insertion::PathsAt(const CagePosition& shared, const Scratch& scratch) const {
+  Paths& paths = scratch.Get<Paths>();
+  if (paths.of == this && std::memcmp(&paths.shared, &shared, sizeof(shared)) == 0) return paths;
+  for (Points* points : {&paths.x, &paths.by_pump, &paths.by_bucket}) points->resize(3, std::ssize(inserted_));
+  Eigen::Index i = 0;
   for (const Inserted& each : inserted_) {
-    const CagePosition k = shared.Of(each.path.weight), rate = shared_rate.Of(each.path.weight);
+    const CagePosition k = shared.Of(each.path.weight);
     for (int axis = 0; axis < 3; ++axis) {
       const CageQuadratic& shift = each.path.shift[axis];
-      state.x(axis, each.vertex) = each.rest[axis] + shift.At(k);
-      state.v(axis, each.vertex) = shift.ByPump(k) * rate.pump + shift.ByBucket(k) * rate.bucket;
+      paths.x(axis, i) = each.rest[axis] + shift.At(k);
+      paths.by_pump(axis, i) = shift.ByPump(k);
+      paths.by_bucket(axis, i) = shift.ByBucket(k);
     }
+    ++i;
+  }
+  paths.shared = shared;
+  paths.of = this;
+  return paths;
+}
+
+void Insertion::Drive(const EvalContext& at, State& state) const {
+  const CagePosition shared_rate = wall_->Rate(at);
+  const Paths& paths = PathsAt(wall_->Position(at), at.scratch);
+  Eigen::Index i = 0;
+  for (const Inserted& each : inserted_) {
+    const CagePosition rate = shared_rate.Of(each.path.weight);
+    state.x.col(each.vertex) = paths.x.col(i);
+    state.v.col(each.vertex) = paths.by_pump.col(i) * rate.pump + paths.by_bucket.col(i) * rate.bucket;
+    ++i;
   }
 }
 
 void Insertion::TransferForces(const EvalContext& at, MutablePoints f) const {
-  const CagePosition shared = wall_->Position(at);
+  const Paths& paths = PathsAt(wall_->Position(at), at.scratch);
+  const bool moves = wall_->Moving(at) != MovingParts{};
   double pump = 0, bucket = 0;
   std::array<double, kCageParts> parts = {};
+  Eigen::Index i = 0;
   for (const Inserted& each : inserted_) {
-    const CagePosition k = shared.Of(each.path.weight);
     for (int axis = 0; axis < 3; ++axis) {
-      const double by_pump = f(axis, each.vertex) * each.path.shift[axis].ByPump(k);
-      const double by_bucket = f(axis, each.vertex) * each.path.shift[axis].ByBucket(k);
+      const double by_pump = f(axis, each.vertex) * paths.by_pump(axis, i);
+      const double by_bucket = f(axis, each.vertex) * paths.by_bucket(axis, i);
       pump += by_pump, bucket += by_bucket;
-      for (size_t i = 0; i < kCageParts; ++i) parts[i] += each.path.weight[i] * (by_pump + by_bucket);
+      if (!moves) continue;
+      for (size_t part = 0; part < kCageParts; ++part) parts[part] += each.path.weight[part] * (by_pump + by_bucket);
     }
+    ++i;
   }
   wall_->pump.AddForce(pump, f);
   wall_->bucket.AddForce(bucket, f);

@@ -33,6 +33,9 @@ struct CageWall {
   // departs from its default, a segment if it is broken. Where forces are balanced at rest every part moves.
   bool Moves(size_t part, const EvalContext& at) const;
   MovingParts Moving(const EvalContext& at) const;
+  // Returns the wall's table at a moment, valid until the next call with the same scratch memory. Those who ask at the
+  // same position of the cage share it.
+  const WallTable& TableAt(const EvalContext& at) const;
   // Adds generalised forces to the parts that move [J].
   void AddPartForces(const std::array<double, kCageParts>& force, const EvalContext& at, MutablePoints f) const;
 };
@@ -57,7 +60,9 @@ class Insertion final : public Motion {
     Eigen::Vector3d rest;      // [m]
     InnerWall::Follower path;  // of the wall there
   };
+  struct Paths;  // of all inserted vertices, at one position of the cage
   Insertion(std::string name, std::shared_ptr<const CageWall> wall) : Motion(std::move(name)), wall_(std::move(wall)) {}
+  const Paths& PathsAt(const CagePosition& shared, const Scratch& scratch) const;
 
   const std::shared_ptr<const CageWall> wall_;
   std::vector<Inserted> inserted_;

@@ -65,7 +65,7 @@ Skin SkinByDistance(const SkinDrivers& drivers, const BodyModel& body, int b, co
     }
   };
   const std::vector<SkinWeight> weights = WeighAll(vertices.cols(), stop, append);
-  return {.body = b, .weights = ByVertex(weights, vertices.cols()), .triangles = {}, .sheet = nullptr};
+  return {.body = b, .weights = SkinWeights(ByVertex(weights, vertices.cols())), .triangles = {}, .sheet = nullptr};
 }
 
 void AddSkin(Skin skin, ModelBuilder& builder) {
@@ -93,8 +93,8 @@ void SkinAllSmoothly(const std::vector<int>& bodies, const std::vector<int>& dri
     const auto append = [&](const PartRange& range, std::vector<SkinWeight>& of) {
       for (std::int64_t i = range.first; i < range.end; ++i) smooth.Append(rest.col(i), static_cast<int>(i), of);
     };
-    std::vector<SkinWeight> weights = WeighAll(rest.cols(), builder.stop, append);
-    AddSkin({.body = b, .weights = std::move(weights), .triangles = {}, .sheet = nullptr}, builder);
+    const std::vector<SkinWeight> weights = WeighAll(rest.cols(), builder.stop, append);
+    AddSkin({.body = b, .weights = SkinWeights(weights), .triangles = {}, .sheet = nullptr}, builder);
     vertices += rest.cols();
   }
   builder.ReportElement("seen", name, vertices, "vertices", "by smooth weights, computed per frame, not per step");
@@ -109,7 +109,7 @@ absl::Status SkinAllAsBars(const std::vector<int>& bodies, const std::vector<int
   const SkinDrivers search(builder, drivers);
   for (const int b : bodies) {
     const Points& rest = builder.model.bodies[b].mesh.vertices;
-    AddSkin({.body = b, .weights = BarWeights(search, rest), .triangles = {}, .sheet = nullptr}, builder);
+    AddSkin({.body = b, .weights = SkinWeights(BarWeights(search, rest)), .triangles = {}, .sheet = nullptr}, builder);
     builder.ReportElement("seen", name, rest.cols(), "vertices", "as a bar between two bodies, computed per frame");
   }
   return absl::OkStatus();

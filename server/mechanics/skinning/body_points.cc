@@ -2,8 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <cstring>
+#include <iterator>
 #include <vector>
 
+#include "server/mechanics/skinning/displacements.h"
 #include "server/mechanics/skinning/sheet_points.h"
 #include "server/mechanics/skinning/skin_kernel.h"
 
@@ -88,7 +90,7 @@ BodyPoints::BodyPoints(const Model& model, int body)
       driver_rest_(model.rest.data()) {
   const int skin = model.bodies[body].skin;
   if (skin < 0) return;
-  weights_ = model.skins[skin].weights;
+  weights_ = &model.skins[skin].weights;
   triangles_ = model.skins[skin].triangles;
   sheet_ = model.skins[skin].sheet.get();
   corrections_ = model.skins[skin].corrections;
@@ -105,10 +107,15 @@ void BodyPoints::Follow(const EvalContext& at, MutablePoints x, MutablePoints v)
   Placed out{x, v};
   if (!triangles_.empty()) return PlaceOnTriangles<kVelocities>(triangles_, at, out);
   if (pose_ >= 0) return MoveRigidly<kVelocities>(at.poses[pose_], *rest_, out);
-  x = *rest_;
-  if (kVelocities) v.setZero();
-  const DriverState drivers = {PoseMatricesOf(at), driver_rest_, at.x.data(), at.v.data()};
-  ApplySkinWeights(weights_, drivers, rest_->data(), x.data(), kVelocities ? v.data() : nullptr);
+  const bool all_weighed = weights_ != nullptr && std::ssize(weights_->rows) == rest_->cols();
+  if (!all_weighed) {
+    x = *rest_;
+    if (kVelocities) v.setZero();
+  }
+  if (weights_ == nullptr) return;
+  const DriverState drivers = {PoseMatricesOf(at),
+                               weights_->follow_simulated ? DisplacementsOf(at, driver_rest_) : nullptr, at.v.data()};
+  ApplySkinWeights(*weights_, drivers, rest_->data(), x.data(), kVelocities ? v.data() : nullptr);
   for (const auto& correction : corrections_) kVelocities ? correction->Move(at, x, v) : correction->Place(at, x);
 }
 

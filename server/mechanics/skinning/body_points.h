@@ -41,7 +41,7 @@ class BodyPoints {
   const Points* rest_;
   int first_vertex_ = -1;
   int pose_ = -1;
-  std::span<const SkinWeight> weights_;
+  const SkinWeights* weights_ = nullptr;  // null: it has no skin
   std::span<const TriangleBinding> triangles_;
   const DriverSheet* sheet_ = nullptr;  // to which triangles_ are bound; null if to flat triangles
   std::span<const std::shared_ptr<const SkinCorrection>> corrections_;

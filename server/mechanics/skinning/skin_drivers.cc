@@ -13,10 +13,14 @@ void AppendOfVertex(const Skin& skin, int vertex, int for_vertex, double weight,
     for (int i = 0; i < 3; ++i) weights.push_back({for_vertex, -1, binding.corners[i], weight * binding.weights[i]});
     return;
   }
-  const auto before = [](const SkinWeight& own, int v) { return own.vertex < v; };
-  auto own = std::lower_bound(skin.weights.begin(), skin.weights.end(), vertex, before);
-  for (; own != skin.weights.end() && own->vertex == vertex; ++own) {
-    weights.push_back({for_vertex, own->pose, own->simulated_vertex, weight * own->weight});
+  const SkinWeights& own = skin.weights;
+  const auto before = [](const SkinWeights::Row& row, int v) { return row.vertex < v; };
+  const auto row = std::lower_bound(own.rows.begin(), own.rows.end(), vertex, before);
+  if (row == own.rows.end() || row->vertex != vertex) return;
+  for (int i = 0; i < row->poses + row->simulated; ++i) {
+    const bool pose = i < row->poses;
+    const int driver = own.drivers[row->first + i];
+    weights.push_back({for_vertex, pose ? driver : -1, pose ? -1 : driver, weight * own.weights[row->first + i]});
   }
 }
 

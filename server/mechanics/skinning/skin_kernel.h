@@ -7,20 +7,21 @@
 #include <span>
 
 #include "server/mechanics/skin.h"
+#include "server/mechanics/skinning/displacements.h"
 #include "server/mechanics/skinning/pose_matrices.h"
 
 namespace phrenic {
 
-// The drivers at one moment. Arrays are 3 x n, column-major.
+// The drivers at one moment.
 struct DriverState {
   std::span<const PoseMatrices> poses;
-  const double* rest;   // simulated vertices [m]
-  const double *x, *v;  // their current positions [m] and velocities [m/s]
+  const Displacement* displacements;  // of simulated vertices
+  const double* v;                    // their velocities, 3 x n, column-major [m/s]
 };
 
 // Sets x = rest + the weighted displacements of the drivers [m], and v to their weighted velocities [m/s], for the
 // vertices with weights. `rest`, x and v are those of the skinned body; v may be null.
-void ApplySkinWeights(std::span<const SkinWeight> weights, const DriverState& drivers, const double* rest, double* x,
+void ApplySkinWeights(const SkinWeights& weights, const DriverState& drivers, const double* rest, double* x,
                       double* v = nullptr);
 
 }  // namespace phrenic

@@ -17,9 +17,8 @@ bool IsMiddleOf(const DriverSheet& sheet, const BodyModel& body) {
 bool FollowsTissue(const Model& model, const BodyModel& body) {
   if (body.first_vertex >= 0) return true;
   if (body.skin < 0) return false;
-  if (!model.skins[body.skin].triangles.empty()) return true;
-  const std::vector<SkinWeight>& weights = model.skins[body.skin].weights;
-  return std::any_of(weights.begin(), weights.end(), [](const SkinWeight& weight) { return weight.pose < 0; });
+  const Skin& skin = model.skins[body.skin];
+  return !skin.triangles.empty() || skin.weights.follow_simulated;
 }
 
 std::vector<int> TissueBodies(const Model& model) {

@@ -28,27 +28,28 @@ std::string Lungs(const std::string& parameters, const std::string& more = "") {
 }
 
 // The displacement at the peak of a breath of 4 s.
-Points Displacement(const std::string& scene) {
+Points DisplacementIn(const std::string& scene) {
   const auto model = CompileText(scene);
   return RunTo(*model, 2, 0.01).x - model->rest;
 }
 
 TEST(LungModes, MoveNothingWithoutAnAmplitudeOrABreath) {
-  EXPECT_TRUE(Displacement(Lungs("")).isZero(0));
-  EXPECT_TRUE(Displacement(Lungs("lung_piston_right: 0.02 breath_force: 0")).isZero(0));
+  EXPECT_TRUE(DisplacementIn(Lungs("")).isZero(0));
+  EXPECT_TRUE(DisplacementIn(Lungs("lung_piston_right: 0.02 breath_force: 0")).isZero(0));
 }
 
 TEST(LungModes, AreLinearInAmplitudeAndForce) {
-  const Points piston = Displacement(Lungs("lung_piston_right: 0.02")), pump = Displacement(Lungs("lung_pump: 0.01")),
-               both = Displacement(Lungs("lung_piston_right: 0.04 lung_pump: 0.03")),
-               stronger = Displacement(Lungs("lung_pump: 0.01 breath_force: 3"));
+  const Points piston = DisplacementIn(Lungs("lung_piston_right: 0.02")),
+               pump = DisplacementIn(Lungs("lung_pump: 0.01")),
+               both = DisplacementIn(Lungs("lung_piston_right: 0.04 lung_pump: 0.03")),
+               stronger = DisplacementIn(Lungs("lung_pump: 0.01 breath_force: 3"));
   EXPECT_GT(piston.norm(), 0.01);
   EXPECT_LT((both - 2 * piston - 3 * pump).norm(), 1e-12);
   EXPECT_LT((stronger - 3 * pump).norm(), 1e-12);
 }
 
 TEST(LungModes, OfOneSideMoveThatLungAlone) {
-  const Points moved = Displacement(Lungs("lung_piston_right: 0.02"));
+  const Points moved = DisplacementIn(Lungs("lung_piston_right: 0.02"));
   const Eigen::Index half = moved.cols() / 2;
   EXPECT_TRUE(moved.rightCols(half).isZero(0));
   double lowest = 0;
@@ -98,7 +99,7 @@ TEST(LungModes, CarryWhatLiesInside) {
       "bodies { name: 'points' role: ROLE_DEFORMABLE mass: 1 polyhedron { vertices { x: -0.07 z: -0.1 } "
       "vertices { x: -0.07 z: 0.1 } vertices { x: 0.07 z: -0.1 } } } ";
   const std::string scene = points + Lungs("lung_piston_right: 0.02", "inside: 'body:points' ");
-  const Points moved = Displacement(scene).leftCols(3);
+  const Points moved = DisplacementIn(scene).leftCols(3);
   EXPECT_LT(moved(2, 0), -0.008) << "low tissue descends";
   EXPECT_GT(moved(2, 1), moved(2, 0) / 3) << "high tissue less";
   EXPECT_TRUE(moved.col(2).isZero(0)) << "the other lung stays";

@@ -62,8 +62,10 @@ Moved ByDefinition(const Skinned& of) {
 
 Moved Ours(const Skinned& of, bool velocities) {
   Moved out{of.rest, Points::Zero(3, kVertices)};
-  const DriverState drivers = {of.matrices, of.rest_of_drivers.data(), of.x.data(), of.v.data()};
-  ApplySkinWeights(of.weights, drivers, of.rest.data(), out.x.data(), velocities ? out.v.data() : nullptr);
+  std::vector<Displacement> displacements;
+  SetDisplacements(of.x, of.rest_of_drivers.data(), displacements);
+  const DriverState drivers = {of.matrices, displacements.data(), of.v.data()};
+  ApplySkinWeights(SkinWeights(of.weights), drivers, of.rest.data(), out.x.data(), velocities ? out.v.data() : nullptr);
   return out;
 }
 
