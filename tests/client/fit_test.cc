@@ -31,7 +31,7 @@ std::string EggPerson(int count) {
 }
 
 Outcome FitCommand(std::vector<std::string> more) {
-  std::vector<std::string> arguments = {"fit", "thorax", "--resolution", "12"};
+  std::vector<std::string> arguments = {"fit", "thorax", "--resolution", "20"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return Phrenic(arguments);
 }
@@ -207,15 +207,15 @@ TEST(Fit, OfParametersSaysWhatIsMissing) {
 
 TEST(Register, ToSurfacesTellsHowFarTheyAre) {
   const std::string points = WriteScratch("exhale.csv", EggPerson(500)), lungs = Scratch("lungs");
-  ASSERT_EQ(Phrenic({"register", "thorax", "--resolution", "12", "--exhale", points, "--out", lungs}).code, 0);
+  ASSERT_EQ(Phrenic({"register", "thorax", "--resolution", "20", "--exhale", points, "--out", lungs}).code, 0);
   const std::string right = lungs + "/lung-right.obj", left = lungs + "/lung-left.obj";
-  const Outcome outcome = Phrenic({"register", "thorax", "--resolution", "12", "--surface", "lung-right=" + right,
+  const Outcome outcome = Phrenic({"register", "thorax", "--resolution", "20", "--surface", "lung-right=" + right,
                                    "--surface", "lung-left=" + left, "-o", "json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   ASSERT_EQ(outcome.json()["structures"].size(), 2u);
   EXPECT_LT(outcome.json()["structures"][0]["mean_mm"], 4);
   EXPECT_LE(outcome.json()["structures"][0]["bent_mean_mm"], outcome.json()["structures"][0]["mean_mm"]);
-  const Outcome swapped = Phrenic({"register", "thorax", "--resolution", "12", "--surface", "lung-right=" + left,
+  const Outcome swapped = Phrenic({"register", "thorax", "--resolution", "20", "--surface", "lung-right=" + left,
                                    "--surface", "lung-left=" + right});
   EXPECT_EQ(swapped.code, 2);
   EXPECT_THAT(swapped.err, HasSubstr("in LPS the left has the larger x"));
@@ -226,7 +226,7 @@ TEST(Register, ToSurfacesTellsHowFarTheyAre) {
 TEST(Register, WritesTheLungsThatHoldThePoints) {
   const std::string points = WriteScratch("exhale.csv", EggPerson(500));
   const Outcome outcome = Phrenic(
-      {"register", "thorax", "--resolution", "12", "--exhale", points, "--out", Scratch("lungs"), "-o", "json"});
+      {"register", "thorax", "--resolution", "20", "--exhale", points, "--out", Scratch("lungs"), "-o", "json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.json()["lungs"].size(), 2u);
   EXPECT_LT(outcome.json()["lungs"][0]["outside"], 0.1);
@@ -241,7 +241,7 @@ TEST(StudyMotion, MakesATableAndAPage) {
   std::filesystem::create_directories(Scratch("people"));
   WriteScratch("people/a.csv", EggPerson(500));
   WriteScratch("people/b.csv", EggPerson(600));
-  const Outcome study = Phrenic({"study", "motion", "--cases", Scratch("people"), "--resolution", "12", "--page",
+  const Outcome study = Phrenic({"study", "motion", "--cases", Scratch("people"), "--resolution", "20", "--page",
                                  Scratch("motion.html"), "-o", "csv"});
   ASSERT_EQ(study.code, 0) << study.err;
   EXPECT_THAT(study.out, HasSubstr("person,pairs,descent mm,no motion,rigid shift"));
@@ -249,7 +249,7 @@ TEST(StudyMotion, MakesATableAndAPage) {
   EXPECT_THAT(study.out, HasSubstr("\nmean,"));
   EXPECT_THAT(ReadAll(Scratch("motion.html")), HasSubstr("<h2>b</h2>"));
   const std::vector<std::string> keeping = {"study",        "motion", "--cases", Scratch("people"),
-                                            "--resolution", "12",     "--keep",  Scratch("kept"),
+                                            "--resolution", "20",     "--keep",  Scratch("kept"),
                                             "--threads",    "1",      "-o",      "csv"};
   const Outcome first = Phrenic(keeping), second = Phrenic(keeping);
   EXPECT_EQ(first.out, study.out);
