@@ -8,7 +8,6 @@
 #include "server/daemon/log.h"
 #include "server/daemon/manual.h"
 #include "server/daemon/serve.h"
-#include "server/service/memory_trimmer.h"
 #include "server/settings/settings_file.h"
 
 namespace phrenic::daemon {
@@ -22,7 +21,6 @@ int Refuse(const absl::Status& status) {
 int Main(int argc, char** argv) {
   setenv("GRPC_VERBOSITY", "NONE", 0);       // errors are returned as statuses
   setenv("GRPC_DNS_RESOLVER", "native", 0);  // names as other programs resolve them (nsswitch.conf)
-  service::LimitFreeMemory();
   // Debian's Abseil checks every lock for deadlocks, which costs 5 % of streaming; the tests keep the check.
   absl::SetMutexDeadlockDetectionMode(absl::OnDeadlockCycle::kIgnore);
   CLI::App app("phrenicd: simulates the breathing diaphragm and serves it to viewers and programs.", "phrenicd");

@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "phrenic/v1/session.grpc.pb.h"
+#include "server/service/memory_trimmer.h"
 #include "server/service/net/address.h"
 #include "server/service/net/listen.h"
 #include "server/service/server.h"
@@ -128,6 +129,7 @@ void ExitAfter(double seconds) {
 }  // namespace
 
 int Serve(const Flags& flags) {
+  service::LimitFreeMemory();
   const sigset_t signals = BlockSignals();
   service::RaiseFileLimit();
   const auto server = Start(flags);

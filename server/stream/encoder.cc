@@ -1,5 +1,7 @@
 #include "server/stream/encoder.h"
 
+#include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "server/stream/rest_shape.h"
@@ -12,22 +14,34 @@ constexpr std::size_t kMostCodecs = 8;  // cached, one per selection of bodies
 }  // namespace
 
 Encoder::Encoder(std::shared_ptr<const Model> model, const Layout& layout)
-    : model_(std::move(model)), layout_(layout), streamed_(StreamedBodies(*model_, layout)) {}
+    : model_(std::move(model)),
+      layout_(layout),
+      streamed_(StreamedBodies(*model_, layout)),
+      placed_(model_->bodies.size()),
+      positions_(3, layout.vertices()) {}
 
 bool Encoder::Make(const Snapshot& snapshot) {
   if (snapshot.sequence == sequence_) return sendable_;
   sequence_ = snapshot.sequence;
   made_.clear();
   shown_ = false;
-  absl::StatusOr<v1::Frame> frame = MakeFrame(*model_, layout_, snapshot, scratch_);
+  placed_.assign(placed_.size(), false);
+  absl::StatusOr<v1::Frame> frame = MakeNumbers(*model_, snapshot, scratch_);
   sendable_ = frame.ok();
   if (!sendable_) return false;
   numbers_.Swap(&*frame);
-  positions_ =
-      Eigen::Map<const Floats>(reinterpret_cast<const float*>(numbers_.positions().data()), 3, layout_.vertices());
-  numbers_.clear_positions();
   poses_ = std::move(*numbers_.mutable_poses());
   numbers_.clear_poses();
+  return true;
+}
+
+bool Encoder::Place(const State& state, const std::vector<int>& bodies) {
+  std::vector<int> missing;
+  std::ranges::copy_if(bodies, std::back_inserter(missing), [&](int body) { return !placed_[body]; });
+  if (missing.empty()) return true;
+  if (!PlaceBodies(*model_, layout_, state, missing, positions_.data(), scratch_).ok()) return false;
+  for (const int body : missing) placed_[body] = true;
+  placements_ += static_cast<std::int64_t>(missing.size());
   return true;
 }
 
@@ -62,7 +76,7 @@ void Encoder::LookForBasis(absl::Time made) {
 }
 
 void Encoder::SetPositions(const FrameEncoding& encoding, v1::Frame& frame) {
-  const std::vector<int>& bodies = encoding.chosen ? encoding.bodies : streamed_;
+  const std::vector<int>& bodies = BodiesOf(encoding);
   const bool all = bodies == streamed_;
   const Floats picked = all ? Floats() : Pick(*model_, layout_, bodies, positions_);
   const Floats& positions = all ? positions_ : picked;
@@ -90,9 +104,10 @@ Bytes Encoder::Encode(const Snapshot& snapshot, const FrameEncoding& encoding) {
   if (!Make(snapshot)) return nullptr;
   Bytes& bytes = made_[encoding];
   if (bytes != nullptr) return bytes;
+  if (!encoding.numbers_only && !Place(snapshot.state, BodiesOf(encoding))) return nullptr;
   v1::WatchFramesResponse response;
   *response.mutable_frame() = numbers_;
-  if (encoding.codec == v1::CODEC_BASIS) LookForBasis(snapshot.made);
+  if (encoding.codec == v1::CODEC_BASIS && Place(snapshot.state, streamed_)) LookForBasis(snapshot.made);
   if (!encoding.numbers_only) SetPositions(encoding, *response.mutable_frame());
   bytes = std::make_shared<const std::string>(response.SerializeAsString());
   return bytes;

@@ -1,7 +1,7 @@
 #include "server/stream/frame.h"
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "absl/strings/str_cat.h"
 #include "server/mechanics/measures/readings.h"
@@ -11,6 +11,7 @@
 #include "server/mechanics/skinning/probe_position.h"
 #include "server/stream/codecs/wire.h"
 #include "server/stream/float_kernel.h"
+#include "server/stream/rest_shape.h"
 
 namespace phrenic::stream {
 namespace {
@@ -19,32 +20,9 @@ absl::Status NotFinite(const std::string& what, const State& state) {
   return absl::InternalError(absl::StrCat(what, " is not finite at tick ", state.tick, ": the frame is not sent"));
 }
 
-// Returns false if one is not finite.
-bool AppendAsFloats(const ConstPoints& points, std::string& bytes) {
-  constexpr Eigen::Index kTogether = 3072;  // stay in the L1 cache
-  float floats[kTogether];
-  bool finite = true;
-  for (Eigen::Index first = 0; first < points.size(); first += kTogether) {
-    const auto count = static_cast<std::size_t>(std::min(kTogether, points.size() - first));
-    finite = ToFloats(points.data() + first, count, floats) && finite;
-    bytes.append(reinterpret_cast<const char*>(floats), sizeof(float) * count);
-  }
-  return finite;
-}
-
-absl::Status AppendPositions(const Model& model, const Layout& layout, const State& state, const Scratch& scratch,
-                             std::string& bytes) {
-  bytes.reserve(sizeof(float) * 3 * layout.vertices());
-  EvalContext at = MakeEvalContext(model, model.parameters, state, scratch);
-  at.pose_matrices = PoseMatricesOf(at).data();
-  at.displacements = DisplacementsOf(at, model.rest.data());
-  for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
-    if (layout.placement(i) != v1::PLACEMENT_STREAMED) continue;
-    if (!AppendAsFloats(BodyPoints(model, i).Positions(at), bytes)) {
-      return NotFinite(absl::StrCat("a vertex of ", model.bodies[i].name), state);
-    }
-  }
-  return absl::OkStatus();
+// Frames have float32: a larger number becomes infinite.
+bool IsFinite(const Points& x) {
+  return (x.array().abs() <= static_cast<double>(std::numeric_limits<float>::max())).all();
 }
 
 absl::Status AppendPoses(const State& state, std::string& bytes) {
@@ -91,7 +69,30 @@ absl::Status AddScalars(const Model& model, const State& state, v1::Frame& frame
   return absl::OkStatus();
 }
 
+absl::Status AppendPositions(const Model& model, const Layout& layout, const State& state, const Scratch& scratch,
+                             std::string& bytes) {
+  const std::size_t begin = bytes.size();
+  bytes.resize(begin + sizeof(float) * 3 * static_cast<std::size_t>(layout.vertices()));
+  return PlaceBodies(model, layout, state, StreamedBodies(model, layout),
+                     reinterpret_cast<float*>(bytes.data() + begin), scratch);
+}
+
 }  // namespace
+
+absl::Status PlaceBodies(const Model& model, const Layout& layout, const State& state, const std::vector<int>& bodies,
+                         float* positions, const Scratch& scratch) {
+  EvalContext at = MakeEvalContext(model, model.parameters, state, scratch);
+  at.pose_matrices = PoseMatricesOf(at).data();
+  at.displacements = DisplacementsOf(at, model.rest.data());
+  for (const int body : bodies) {
+    const ConstPoints x = BodyPoints(model, body).Positions(at);
+    const std::ptrdiff_t first = 3 * std::ptrdiff_t{layout.first_vertex(body)};
+    if (!ToFloats(x.data(), static_cast<std::size_t>(x.size()), positions + first)) {
+      return NotFinite(absl::StrCat("a vertex of ", model.bodies[body].name), state);
+    }
+  }
+  return absl::OkStatus();
+}
 
 absl::Status AppendBodies(const Model& model, const Layout& layout, const State& state, std::string& positions,
                           std::string& poses, const Scratch& scratch) {
@@ -100,8 +101,7 @@ absl::Status AppendBodies(const Model& model, const Layout& layout, const State&
   return AppendPoses(state, poses);
 }
 
-absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, const Snapshot& snapshot,
-                                    const Scratch& scratch) {
+absl::StatusOr<v1::Frame> MakeNumbers(const Model& model, const Snapshot& snapshot, const Scratch& scratch) {
   const State& state = snapshot.state;
   v1::Frame frame;
   frame.set_sequence(snapshot.sequence);
@@ -111,8 +111,8 @@ absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, co
   frame.set_phase(state.phase - std::floor(state.phase));
   frame.set_unix_nanos(absl::ToUnixNanos(snapshot.made));
   if (!std::isfinite(frame.time()) || !std::isfinite(frame.breath())) return NotFinite("the time", state);
-  absl::Status placed = AppendBodies(model, layout, state, *frame.mutable_positions(), *frame.mutable_poses(), scratch);
-  if (!placed.ok()) return placed;
+  if (!IsFinite(state.x)) return NotFinite("a simulated vertex", state);
+  if (absl::Status status = AppendPoses(state, *frame.mutable_poses()); !status.ok()) return status;
   if (absl::Status status = AddScalars(model, state, frame); !status.ok()) return status;
   for (const Probe& probe : model.probes) {
     if (absl::Status status = AddProbe(model, state, probe, scratch, frame); !status.ok()) return status;
@@ -121,6 +121,15 @@ absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, co
   for (const v1::MeasureReading& reading : frame.measures()) {
     if (!std::isfinite(reading.value())) return NotFinite(absl::StrCat("measure ", reading.name()), state);
   }
+  return frame;
+}
+
+absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, const Snapshot& snapshot,
+                                    const Scratch& scratch) {
+  absl::StatusOr<v1::Frame> frame = MakeNumbers(model, snapshot, scratch);
+  if (!frame.ok()) return frame;
+  absl::Status placed = AppendPositions(model, layout, snapshot.state, scratch, *frame->mutable_positions());
+  if (!placed.ok()) return placed;
   return frame;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
@@ -21,15 +22,24 @@ struct Snapshot {
   absl::Time made;            // on the server's clock; clients see it as unix_nanos
 };
 
-// Computes the positions of every streamed body and every pose of the snapshot. INTERNAL if a number is not finite as
-// float32; such a frame is not sent. Positions and poses are little-endian float32 [m], body after body in the order of
-// the model (proto/README.md); a pose is a quaternion x, y, z, w and a translation. Adds probes, scalar coordinates and
-// measures. Thread-safe, for threads with scratch memory of their own; the publisher's thread calls it.
+// Returns the poses, probes, scalar coordinates and measures of the snapshot: all of a frame but positions. INTERNAL if
+// a number is not finite, or a simulated position as float32; such a frame is not sent. A pose is a quaternion
+// x, y, z, w and a translation, little-endian float32 [m]. Thread-safe, for threads with scratch memory of their own;
+// the publisher's thread calls it.
+absl::StatusOr<v1::Frame> MakeNumbers(const Model& model, const Snapshot& snapshot, const Scratch& scratch = {});
+
+// Sets the positions of streamed bodies as float32 [m] in `positions`, which holds 3 x layout.vertices() of all
+// streamed bodies in the order of the model. INTERNAL if one is not finite. Thread-safe in the same way.
+absl::Status PlaceBodies(const Model& model, const Layout& layout, const State& state, const std::vector<int>& bodies,
+                         float* positions, const Scratch& scratch = {});
+
+// Returns the numbers and the positions of every streamed body, little-endian float32 (proto/README.md). The errors of
+// both. Thread-safe in the same way.
 absl::StatusOr<v1::Frame> MakeFrame(const Model& model, const Layout& layout, const Snapshot& snapshot,
                                     const Scratch& scratch = {});
 
-// Appends the positions of every streamed body and every pose, in the same form. The errors of MakeFrame. Thread-safe
-// in the same way.
+// Appends the positions of every streamed body and every pose, in the same form. The errors of PlaceBodies.
+// Thread-safe in the same way.
 absl::Status AppendBodies(const Model& model, const Layout& layout, const State& state, std::string& positions,
                           std::string& poses, const Scratch& scratch = {});
 

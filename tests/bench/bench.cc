@@ -137,11 +137,13 @@ class Bench {
   }
 
   void RegisterFrames(Table& table) {
-    const auto frame = [this](v1::Codec codec) {
-      return [this, codec] { frames_.Make(thorax_.state, thorax_.parameters, codec); };
+    const auto frame = [this](v1::Codec codec, bool seen = false) {
+      return [this, codec, seen] { frames_.Make(thorax_.state, thorax_.parameters, codec, seen); };
     };
     table.Register({"thorax, a frame for viewers, raw", frame(v1::CODEC_RAW), 0, "", kThorax});
     table.Register({"thorax, a frame for viewers, predicted", frame(v1::CODEC_PREDICTED), 0, "", kThorax});
+    const auto seen = frame(v1::CODEC_PREDICTED, true);
+    table.Register({"thorax, a frame for viewers, predicted, what a page shows at first", seen, 0, "", kThorax});
   }
 
   void RegisterOthers(Table& table) {

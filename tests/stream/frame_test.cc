@@ -155,6 +155,33 @@ TEST(Frame, StreamedBodiesFollowEachOtherAndOthersTakeNoPlace) {
   EXPECT_EQ(layout.vertices(), 5);
 }
 
+TEST(Frame, ABodyIsPlacedOnceAndOnlyIfAViewerHasIt) {
+  const auto model = CompileText(Triangle(R"(
+    bodies { name: "second" role: ROLE_DEFORMABLE polyhedron { vertices { z: 5 } vertices { z: 6 } edges { a: 0 b: 1 } } }
+  )"));
+  const Layout layout(*model);
+  Encoder encoder(model, layout);
+  Snapshot snapshot = At(*model, 0.2);
+  const auto positions = [&](const FrameEncoding& encoding) {
+    v1::WatchFramesResponse response;
+    EXPECT_TRUE(response.ParseFromString(*encoder.Encode(snapshot, encoding)));
+    return response.frame().positions();
+  };
+  const FrameEncoding second = {.chosen = true, .bodies = {2}};
+  positions({.numbers_only = true});
+  EXPECT_EQ(encoder.placements(), 0);
+  const std::string of_second = positions(second);
+  EXPECT_EQ(encoder.placements(), 1);
+  const std::string all = positions({});
+  EXPECT_EQ(encoder.placements(), 2);
+  EXPECT_EQ(all, MakeFrame(*model, layout, snapshot)->positions());
+  EXPECT_EQ(all.substr(all.size() - of_second.size()), of_second);
+  snapshot.sequence = 2;
+  snapshot.state = At(*model, 0.4).state;
+  EXPECT_NE(positions({}), all);
+  EXPECT_EQ(encoder.placements(), 4) << "another frame";
+}
+
 TEST(Geometry, TellsLookAndSurfaceOfEachBody) {
   const auto model = CompileText(kTriangle);
   const Layout layout(*model);
