@@ -30,8 +30,9 @@ std::string EggPerson(int count) {
   return text;
 }
 
-Outcome FitCommand(std::vector<std::string> more) {
-  std::vector<std::string> arguments = {"fit", "thorax", "--resolution", "20"};
+// `resolution`: in mm; coarse, for speed.
+Outcome FitCommand(std::vector<std::string> more, const std::string& resolution = "20") {
+  std::vector<std::string> arguments = {"fit", "thorax", "--resolution", resolution};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return Phrenic(arguments);
 }
@@ -81,7 +82,7 @@ TEST(Fit, WritesASceneThatRunsAndCanBeFittedAgain) {
 
 TEST(Fit, OfOneNumberWritesASceneToo) {
   const std::string points = WriteScratch("exhale.csv", EggPerson(500)), scene = Scratch("expected.textproto");
-  const Outcome fit = FitCommand({"--exhale", points, "--tidal-volume", "0.4", "--out", scene});
+  const Outcome fit = FitCommand({"--exhale", points, "--tidal-volume", "0.4", "--out", scene}, "12");
   ASSERT_EQ(fit.code, 0) << fit.err;
   const Outcome run = Phrenic({"run", scene, "--seconds", "2", "-o", "json"});
   ASSERT_EQ(run.code, 0) << run.err;
