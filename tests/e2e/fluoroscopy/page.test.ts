@@ -186,7 +186,8 @@ test("ASniffOfARightPalsyIsParadoxicalInWords", async () => {
   expect(Number(right)).toBeGreaterThan(5);
   expect(Number(left)).toBeGreaterThan(10);
   expect(words).toContain("The right dome rises while the left dome falls: paradoxical");
-  expect(await page.locator(".fluoroscopy-marks .excursion").count()).toBe(2);
+  // The next drawing marks them.
+  await expect.poll(() => page.locator(".fluoroscopy-marks .excursion").count()).toBe(2);
   expect(await student.violations()).toEqual([]);
   await student.saveScreenshot("fluoroscopy-phone");
   const parameters = async () => {
