@@ -5,7 +5,9 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace phrenic {
@@ -19,6 +21,11 @@ struct CagePosition {
   double pump = 0, bucket = 0;
   std::array<double, kCageParts> parts = {};
 
+  // True if what is computed from one is that of the other to the bit, also if a coordinate is a negative zero.
+  bool SameBits(const CagePosition& other) const {
+    using Bits = std::array<std::uint64_t, 2 + kCageParts>;
+    return std::bit_cast<Bits>(*this) == std::bit_cast<Bits>(other);
+  }
   bool departs() const { return parts != std::array<double, kCageParts>{}; }
   // Returns the two coordinates of a place where the parts have these weights.
   CagePosition Of(const std::array<double, kCageParts>& weights) const {

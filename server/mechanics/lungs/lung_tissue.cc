@@ -113,9 +113,10 @@ absl::StatusOr<LungTissue> LungTissue::Make(const Mesh& surface, const LungElast
   if (stop.Stopped()) return stop.status();
   std::optional<LayeredCholesky> factors = tissue.Factorise(std::vector<bool>(tissue.places_.size(), false), stop);
   if (stop.Stopped()) return stop.status();
-  if (!factors)
+  if (!factors) {
     return absl::InvalidArgumentError(
         "surface: the stiffness of a lung with it cannot be factorised; look for slivers with phrenic inspect");
+  }
   tissue.factors_ = std::make_shared<const LayeredCholesky>(*std::move(factors));
   return tissue;
 }

@@ -1,7 +1,6 @@
 #include "server/mechanics/motions/insertion.h"
 
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -140,7 +139,7 @@ const WallTable& CageWall::TableAt(const EvalContext& at) const {
   LastWallTable& last = at.scratch.Get<LastWallTable>();
   const CagePosition k = Position(at);
   const MovingParts moving = Moving(at);
-  const bool same = last.of == this && last.moving == moving && std::memcmp(&last.k, &k, sizeof(k)) == 0;
+  const bool same = last.of == this && last.moving == moving && last.k.SameBits(k);
   if (!same) wall.Evaluate(k, moving, last.table);
   last.of = this;
   last.k = k;
@@ -210,7 +209,7 @@ struct Insertion::Paths {
 // A step asks for those at its start, for each vector of forces that it transfers, and for those at its end.
 const Insertion::Paths& Insertion::PathsAt(const CagePosition& shared, const Scratch& scratch) const {
   Paths& paths = scratch.Get<Paths>();
-  if (paths.of == this && std::memcmp(&paths.shared, &shared, sizeof(shared)) == 0) return paths;
+  if (paths.of == this && paths.shared.SameBits(shared)) return paths;
   for (Points* points : {&paths.x, &paths.by_pump, &paths.by_bucket}) points->resize(3, std::ssize(inserted_));
   Eigen::Index i = 0;
   for (const Inserted& each : inserted_) {

@@ -47,9 +47,10 @@ absl::StatusOr<std::string> Decompress(std::string_view compressed, std::size_t 
   const std::size_t got = ZSTD_decompress(bytes.data(), size, compressed.data(), compressed.size());
   if (ZSTD_isError(got))
     return absl::InvalidArgumentError(absl::StrCat("zstd: ", ZSTD_getErrorName(got), "; fetch the bytes again"));
-  if (got != size)
+  if (got != size) {
     return absl::InvalidArgumentError(
         absl::StrCat("zstd: ", got, " bytes instead of ", size, "; fetch the bytes again"));
+  }
   return bytes;
 }
 
