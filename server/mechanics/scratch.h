@@ -12,7 +12,8 @@ namespace phrenic {
 
 // Holds one object of each type that was asked for. Each user has a type of its own (`struct AreaVectors { Points a;
 // }`) and resizes it to fit. Nothing that a result depends on outlives a call: a fresh Scratch gives the same bits.
-// Copies refer to the same memory. One thread at a time; blocks of a step (ForEachBlock) do not use it.
+// Serves one model, which outlives its use: what is computed again only after a change is known by the address of its
+// element. Copies refer to the same memory. One thread at a time; blocks of a step (ForEachBlock) do not use it.
 class Scratch {
  public:
   Scratch() : slots_(std::make_shared<std::vector<Slot>>()) {}

@@ -253,6 +253,16 @@ TEST(LabelSet, FilesThatAreLeftOutHaveTheirReason) {
   EXPECT_THAT(none, HasSubstr("; left out: ct.nii, dose: byte 70: voxels are float32 numbers"));
 }
 
+TEST(LabelSet, ProblemsWithoutEndAreToldTogether) {
+  std::map<std::string, std::string> files = {{"liver.nii.gz", Nifti(Alone("liver"))}};
+  for (int code = 100; code < 125; ++code) files[absl::StrCat(code, ".nii")] = WithType(Alone("spleen"), code);
+  const absl::StatusOr<LabelInput> input = ParseLabelInput("labels", Tar(files), "");
+  ASSERT_TRUE(input.ok()) << input.status();
+  const std::vector<std::string>& remarks = input->volume.remarks;
+  EXPECT_EQ(std::ranges::count_if(remarks, [](const std::string& each) { return each.starts_with("left out: "); }), 21);
+  EXPECT_THAT(remarks, Contains(HasSubstr("120.nii, 121.nii, 122.nii, 123.nii, 124.nii: for other reasons")));
+}
+
 TEST(LabelSet, ArchivesThatAreNotReadAreNamed) {
   const std::string tgz = Deflate(Tar({{"liver.nii.gz", Nifti(Alone("liver"))}}));
   const std::map<std::string, std::string> archives = {{tgz, ".tar.gz"},         {"7z\xbc\xaf\x27\x1c", ".7z"},

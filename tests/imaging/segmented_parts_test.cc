@@ -47,7 +47,7 @@ std::map<std::string, Eigen::Vector3d> Ribs(const LabelVolume& volume, const v1:
   return centroids;
 }
 
-// Returns the last fallback of a kind; null if there is none.
+// Returns the last fallback of a kind; null without one of it.
 const Fallback* Of(v1::AssumptionKind kind, const Fallbacks& fallbacks) {
   const Fallback* last = nullptr;
   for (const Fallback& fallback : fallbacks) {

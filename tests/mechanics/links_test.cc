@@ -213,7 +213,8 @@ TEST(LinkKernel, RestoresEndsThatAreApartAsItDoesTheOthers) {
   };
   const Points before = points(0.1), v = points(1);
   Points x = before + points(0.02);
-  x.col(6).swap(x.col(7));
+  x.col(6) = before.col(6);
+  x.col(7) = before.col(6) - 2 * (before.col(7) - before.col(6));  // has turned, and is too long
   std::vector<Link> links;
   for (int i = 0; i + 1 < n; i += 2) {
     const double length = (before.col(i + 1) - before.col(i)).norm();
@@ -237,6 +238,7 @@ TEST(LinkKernel, RestoresEndsThatAreApartAsItDoesTheOthers) {
     FindDirections(apart, ends.data(), of_ends);
     fetch(x);
     const Restored restored = RestorePackets(packets, directions, 0.01, here_x.data(), here_v.data());
+    EXPECT_EQ(restored.missed, 1U << 3);
     EXPECT_EQ(RestorePackets(apart, of_ends, 0.01, ends.data()), restored.missed);
     EXPECT_NE(here_x, x);
     for (int i = 0; i < n; ++i) {

@@ -214,6 +214,12 @@ void LabelSet::DropHidden() {
   for (Label& label : united_.labels) label = becomes[label];
 }
 
+void LabelSet::LeaveOut(const std::string& name, const std::string& problem) {
+  constexpr std::size_t kMostProblems = 20;
+  const bool apart = problem.empty() || left_out_.size() < kMostProblems || left_out_.contains(problem);
+  left_out_[apart ? problem : "for other reasons; give one of them alone to see its own"].push_back(name);
+}
+
 std::string LabelSet::LeftOutWords() const {
   std::string words;
   for (const auto& [problem, files] : left_out_) {

@@ -25,8 +25,8 @@ class LabelSet {
   // more than kMostLabelFiles, or 65,535 labels; the errors of ReadMaps.
   absl::Status Add(const std::string& name, LabelVolume volume, const std::string& choice);
   // Notes a file that is not read: `problem` is what is wrong with it, and the remedy; empty for a file of another
-  // format.
-  void LeaveOut(const std::string& name, const std::string& problem) { left_out_[problem].push_back(name); }
+  // format. Tells the first 20 problems apart.
+  void LeaveOut(const std::string& name, const std::string& problem);
   // Returns which files with a problem were left out, and why: "; left out: a.nii: ...". Empty without such files.
   std::string LeftOutWords() const;
   // True if no file was added.

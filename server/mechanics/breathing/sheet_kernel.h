@@ -35,7 +35,8 @@ struct LinearField {
 };
 
 // Sets four numbers of each triangle abc in `areas`: (b - a) x (c - a)/6 [m^2] and the mean of the field on it. Returns
-// the volumes of the cones from `apex` over the triangles of each side [m^3]. x is 3 x n. Thread-safe.
+// the volumes of the cones from `apex` over the triangles of each side [m^3]. x is 3 x n. Requires, here and below: the
+// areas are aligned to 32 bytes, as those of an Eigen vector are. Thread-safe.
 std::array<double, 2> SetAreas(const SheetLayout& layout, const double* x, const double* apex, const LinearField& field,
                                double* areas);
 
@@ -47,7 +48,7 @@ void GatherAreas(const SheetLayout& layout, const double* areas, const double* x
 
 // Sums of the products of two arrays: {where `on_left` is 0, where it is 1}. All have the same size.
 std::array<double, 2> SumBySide(const std::vector<double>& on_left, const double* a, const double* b);
-// Adds to `to`: values times `right` where `on_left` is 0, times `left` where it is 1. Or sets it to that.
+// Sets `to` to values times `right` where `on_left` is 0, times `left` where it is 1; or adds that to it.
 void AddBySide(const std::vector<double>& on_left, double right, double left, const double* values, double* to);
 void SetBySide(const std::vector<double>& on_left, double right, double left, const double* values, double* to);
 
